@@ -1,0 +1,51 @@
+# Warnings, floating-point rules and the compiler cache, for all of our own targets.
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+# Checks of invariants stay armed in a release.
+string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
+
+if(LIPOFILL_SANITIZE)
+  add_compile_options(-fsanitize=${LIPOFILL_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${LIPOFILL_SANITIZE})
+endif()
+
+# Contraction to fused multiply-add would make results depend on how the compiler schedules an expression.
+add_library(lipofill_compile INTERFACE)
+target_compile_options(lipofill_compile INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off)
+target_include_directories(lipofill_compile INTERFACE ${PROJECT_SOURCE_DIR})
+
+# One static library a folder, from the sources named.
+#   lipofill_library(NAME SOURCES a.cc b.cc DEPENDS other_targets)
+function(lipofill_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC ${ARG_DEPENDS} PRIVATE lipofill_compile)
+  target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+endfunction()
+
+# One test program from the sources named, each of its cases a ctest with the label.
+#   lipofill_test(NAME LABEL unit SOURCES a_test.cc DEPENDS targets [TIMEOUT seconds])
+function(lipofill_test name)
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  foreach(source ${ARG_SOURCES})
+    set_property(GLOBAL APPEND PROPERTY LIPOFILL_TEST_SOURCES ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+  endforeach()
+  add_executable(${name} ${ARG_SOURCES})
+  target_compile_definitions(${name} PRIVATE LIPOFILL_SHARED_DATA="${LIPOFILL_SHARED_DATA}")
+  target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main lipofill_compile)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+  gtest_discover_tests(${name} TEST_PREFIX ${ARG_LABEL}. DISCOVERY_TIMEOUT 60
+    PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
+endfunction()

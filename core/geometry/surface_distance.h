@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/geometry/surface_mesh.h"
+
+namespace lipofill::geometry {
+
+/// Statistics of unsigned distances [m].
+struct DistanceStatistics {
+  double mean = 0.0;
+  double rms = 0.0;
+  double p95 = 0.0;
+  double max = 0.0;  ///< the one-sided Hausdorff distance
+};
+
+/// Signed distance of each point to a surface through VTK: positive on the outside of its nearest triangle [m].
+std::vector<double> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface);
+
+/// Of the absolute values. All zero for no values.
+DistanceStatistics compute_distance_statistics(const std::vector<double>& distances);
+
+/// How far a patch of one surface is from another surface, both ways.
+struct PatchDistance {
+  std::vector<double> patch_to_target;  ///< signed, a value a patch vertex [m]
+  DistanceStatistics patch_to_target_statistics;
+  /// From those vertices of the target whose nearest point of `patch` is in its inside, not on its border.
+  DistanceStatistics target_to_patch_statistics;
+};
+
+/// `patch`: the surface made of the patch alone. Checked by tests/unit/geometry/surface_distance_test.cc on concentric spheres and
+/// parallel planes.
+PatchDistance compute_patch_distance(const SurfaceMesh& patch, const SurfaceMesh& target);
+
+}  // namespace lipofill::geometry

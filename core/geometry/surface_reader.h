@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "absl/status/statusor.h"
+#include "core/geometry/surface_mesh.h"
+
+namespace lipofill::geometry {
+
+enum class SurfaceFormat { kObj, kPly, kStl };
+
+/// Bounds on what is accepted.
+struct SurfaceLimits {
+  size_t max_bytes = size_t{256} << 20;
+  int max_vertices = 5'000'000;
+  int max_triangles = 10'000'000;
+  double max_extent_m = 3.0;  ///< a larger scan is in the wrong unit
+  double min_extent_m = 0.02;
+};
+
+/// What a surface looks like before any cleaning.
+struct SurfaceCheck {
+  int components = 0;
+  int boundary_loops = 0;
+  int non_manifold_edges = 0;
+  int degenerate_triangles = 0;
+  Eigen::Vector3d extent = Eigen::Vector3d::Zero();  ///< [m]
+};
+
+/// Reads a surface from the bytes of a file: OBJ (polygons, texture coordinates and normals ignored), PLY (ASCII, binary little and
+/// big endian), STL (ASCII, binary; equal points are merged). Polygons are cut into triangles; vertex order is the file's.
+/// @param metres_per_unit  0.001 for a file in millimetres
+/// INVALID_ARGUMENT, saying where in the file and what was found there, for a file that is empty, cut short, of another format, holds
+/// numbers that are not finite or indices out of range, has no triangle, or is outside the limits. Never throws, never reserves more
+/// memory than a small multiple of the file's own size.
+/// Checked by tests/unit/geometry/surface_reader_test.cc.
+absl::StatusOr<SurfaceMesh> read_surface(std::string_view bytes, SurfaceFormat format, double metres_per_unit,
+                                         const SurfaceLimits& limits = {});
+
+SurfaceCheck check_surface(const SurfaceMesh& mesh);
+
+}  // namespace lipofill::geometry

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+
+#include "absl/status/statusor.h"
+
+namespace lipofill::server {
+
+/// The daemon's directory, locked for as long as this lives, so that two daemons never share one store.
+class DataDirectory {
+ public:
+  /// Makes it (readable by its owner alone). FAILED_PRECONDITION when it cannot, or another daemon holds it.
+  static absl::StatusOr<DataDirectory> open(const std::filesystem::path& path);
+  DataDirectory(DataDirectory&& other) noexcept;
+  DataDirectory& operator=(DataDirectory&&) = delete;
+  ~DataDirectory();
+
+  std::filesystem::path database() const { return path_ / "lipofill.sqlite"; }
+  std::filesystem::path scans() const { return path_ / "scans"; }
+
+ private:
+  DataDirectory(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
+  std::filesystem::path path_;
+  int lock_;
+};
+
+}  // namespace lipofill::server

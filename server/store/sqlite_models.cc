@@ -1,0 +1,76 @@
+#include "absl/strings/str_cat.h"
+#include "server/store/sqlite_store.h"
+
+namespace lipofill::server {
+namespace {
+
+#define MODEL_COLUMNS "patient, id, scan, content_hash, spec, report, create_time_us"
+
+ModelRecord model_of(const Query& row) {
+  return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.text(5), row.integer(6)};
+}
+
+absl::Status no_model(const std::string& patient, const std::string& id) {
+  return absl::NotFoundError(absl::StrCat("there is no ", model_name(patient, id)));
+}
+
+}  // namespace
+
+absl::StatusOr<ModelRecord> SqliteStore::create_model(const ModelRecord& model, const RequestKey& request) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  const auto made = read_request(request);
+  if (!made.ok()) return made.status();
+  if (made->has_value()) return read_model(model.patient, (**made).substr(model_name(model.patient, "").size()));
+  if (const auto patient = read_patient(model.patient); !patient.ok()) return patient.status();
+  if (!model.scan.empty()) {
+    if (const auto scan = read_scan(model.patient, model.scan); !scan.ok()) return scan.status();
+  }
+  Query insert(*database_, "INSERT INTO models (" MODEL_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?)");
+  absl::Status done = insert
+                          .bind(model.patient, model.id, model.scan, model.content_hash, model.spec_message,
+                                model.report_message, model.create_time_us)
+                          .run();
+  done.Update(write_request(request, model_name(model.patient, model.id)));
+  if (done.ok()) done.Update(transaction.commit());
+  if (!done.ok()) return done;
+  return model;
+}
+
+absl::StatusOr<ModelRecord> SqliteStore::get_model(const std::string& patient, const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  return read_model(patient, id);
+}
+
+absl::StatusOr<ModelRecord> SqliteStore::read_model(const std::string& patient, const std::string& id) {
+  Query query(*database_, "SELECT " MODEL_COLUMNS " FROM models WHERE patient = ? AND id = ?");
+  if (query.bind(patient, id).next()) return model_of(query);
+  if (!query.status().ok()) return query.status();
+  return no_model(patient, id);
+}
+
+absl::StatusOr<std::vector<ModelRecord>> SqliteStore::list_models(const std::string& patient, const Page& page) {
+  const std::lock_guard lock(mutex_);
+  if (const auto known = read_patient(patient); !known.ok()) return known.status();
+  Query query(*database_, "SELECT " MODEL_COLUMNS " FROM models WHERE patient = ? AND id > ? ORDER BY id LIMIT ?");
+  query.bind(patient, page.after, page.size);
+  std::vector<ModelRecord> models;
+  while (query.next()) models.push_back(model_of(query));
+  if (!query.status().ok()) return query.status();
+  return models;
+}
+
+absl::Status SqliteStore::delete_model(const std::string& patient, const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  Query remove(*database_, "DELETE FROM models WHERE patient = ? AND id = ?");
+  absl::Status done = remove.bind(patient, id).run();
+  if (done.ok() && database_->changes() == 0) return no_model(patient, id);
+  done.Update(forget_requests(model_name(patient, id)));
+  if (done.ok()) done.Update(transaction.commit());
+  return done;
+}
+
+}  // namespace lipofill::server

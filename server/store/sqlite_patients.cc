@@ -1,0 +1,104 @@
+#include "absl/strings/str_cat.h"
+#include "server/store/sqlite_store.h"
+
+namespace lipofill::server {
+
+absl::StatusOr<PatientRecord> SqliteStore::create_patient(const PatientRecord& patient, const RequestKey& request) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  const auto made = read_request(request);
+  if (!made.ok()) return made.status();
+  if (made->has_value()) return read_patient((**made).substr(patient_name("").size()));
+  Query insert(*database_, "INSERT INTO patients VALUES (?, ?, ?)");
+  auto done = insert.bind(patient.id, patient.display_name, patient.create_time_us).run();
+  if (absl::IsAlreadyExists(done)) {
+    return absl::AlreadyExistsError(absl::StrCat(patient_name(patient.id), " exists"));
+  }
+  done.Update(write_labels(patient));
+  done.Update(write_request(request, patient_name(patient.id)));
+  if (done.ok()) done.Update(transaction.commit());
+  if (!done.ok()) return done;
+  return patient;
+}
+
+absl::Status SqliteStore::write_labels(const PatientRecord& patient) {
+  Query clear(*database_, "DELETE FROM patient_labels WHERE patient = ?");
+  absl::Status done = clear.bind(patient.id).run();
+  for (const auto& [key, value] : patient.labels) {
+    Query insert(*database_, "INSERT INTO patient_labels VALUES (?, ?, ?)");
+    done.Update(insert.bind(patient.id, key, value).run());
+  }
+  return done;
+}
+
+absl::StatusOr<PatientRecord> SqliteStore::get_patient(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  return read_patient(id);
+}
+
+absl::StatusOr<PatientRecord> SqliteStore::read_patient(const std::string& id) {
+  Query query(*database_, "SELECT display_name, create_time_us FROM patients WHERE id = ?");
+  if (!query.bind(id).next()) {
+    if (!query.status().ok()) return query.status();
+    return absl::NotFoundError(absl::StrCat("there is no ", patient_name(id)));
+  }
+  PatientRecord patient{id, query.text(0), {}, query.integer(1)};
+  Query labels(*database_, "SELECT key, value FROM patient_labels WHERE patient = ?");
+  labels.bind(id);
+  while (labels.next()) patient.labels[labels.text(0)] = labels.text(1);
+  if (!labels.status().ok()) return labels.status();
+  return patient;
+}
+
+absl::StatusOr<std::vector<PatientRecord>> SqliteStore::list_patients(const Page& page) {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> ids;
+  Query query(*database_, "SELECT id FROM patients WHERE id > ? ORDER BY id LIMIT ?");
+  query.bind(page.after, page.size);
+  while (query.next()) ids.push_back(query.text(0));
+  if (!query.status().ok()) return query.status();
+  std::vector<PatientRecord> patients;
+  for (const std::string& id : ids) {
+    auto patient = read_patient(id);
+    if (!patient.ok()) return patient.status();
+    patients.push_back(*std::move(patient));
+  }
+  return patients;
+}
+
+absl::Status SqliteStore::update_patient(const PatientRecord& patient) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  Query update(*database_, "UPDATE patients SET display_name = ? WHERE id = ?");
+  absl::Status done = update.bind(patient.display_name, patient.id).run();
+  if (done.ok() && database_->changes() == 0) {
+    return absl::NotFoundError(absl::StrCat("there is no ", patient_name(patient.id)));
+  }
+  done.Update(write_labels(patient));
+  if (done.ok()) done.Update(transaction.commit());
+  return done;
+}
+
+absl::Status SqliteStore::delete_patient(const std::string& id, bool force) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  if (const auto patient = read_patient(id); !patient.ok()) return patient.status();
+  Query count(
+      *database_,
+      "SELECT (SELECT count(*) FROM scans WHERE patient = ?1), (SELECT count(*) FROM models WHERE patient = ?1)");
+  if (!count.bind(id).next()) return count.status();
+  if (!force && count.integer(0) + count.integer(1) > 0) {
+    return absl::FailedPreconditionError(absl::StrCat(patient_name(id), " has ", count.integer(0), " scans and ",
+                                                      count.integer(1), " models; delete them first, or force"));
+  }
+  Query remove(*database_, "DELETE FROM patients WHERE id = ?");
+  absl::Status done = remove.bind(id).run();
+  done.Update(forget_requests(patient_name(id)));
+  if (done.ok()) done.Update(transaction.commit());
+  return done;
+}
+
+}  // namespace lipofill::server

@@ -1,0 +1,107 @@
+#include "absl/strings/str_cat.h"
+#include "server/store/sqlite_store.h"
+
+namespace lipofill::server {
+namespace {
+
+#define SCAN_COLUMNS "patient, id, format, unit, size_bytes, sha256, received_bytes, complete, report, create_time_us"
+
+ScanRecord scan_of(const Query& row) {
+  ScanRecord scan;
+  scan.patient = row.text(0);
+  scan.id = row.text(1);
+  scan.format = static_cast<int>(row.integer(2));
+  scan.unit = static_cast<int>(row.integer(3));
+  scan.size_bytes = row.unsigned_integer(4);
+  scan.sha256 = row.text(5);
+  scan.received_bytes = row.unsigned_integer(6);
+  scan.complete = row.integer(7) != 0;
+  scan.report_message = row.text(8);
+  scan.create_time_us = row.integer(9);
+  return scan;
+}
+
+absl::Status no_scan(const std::string& patient, const std::string& id) {
+  return absl::NotFoundError(absl::StrCat("there is no ", scan_name(patient, id)));
+}
+
+}  // namespace
+
+absl::StatusOr<ScanRecord> SqliteStore::create_scan(const ScanRecord& scan, const RequestKey& request) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  const auto made = read_request(request);
+  if (!made.ok()) return made.status();
+  if (made->has_value()) return read_scan(scan.patient, (**made).substr(scan_name(scan.patient, "").size()));
+  if (const auto patient = read_patient(scan.patient); !patient.ok()) return patient.status();
+  Query insert(*database_, "INSERT INTO scans (" SCAN_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  absl::Status done = insert
+                          .bind(scan.patient, scan.id, scan.format, scan.unit, scan.size_bytes, scan.sha256,
+                                scan.received_bytes, scan.complete, scan.report_message, scan.create_time_us)
+                          .run();
+  if (absl::IsAlreadyExists(done)) {
+    return absl::AlreadyExistsError(absl::StrCat(scan_name(scan.patient, scan.id), " exists"));
+  }
+  done.Update(write_request(request, scan_name(scan.patient, scan.id)));
+  if (done.ok()) done.Update(transaction.commit());
+  if (!done.ok()) return done;
+  return scan;
+}
+
+absl::StatusOr<ScanRecord> SqliteStore::get_scan(const std::string& patient, const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  return read_scan(patient, id);
+}
+
+absl::StatusOr<ScanRecord> SqliteStore::read_scan(const std::string& patient, const std::string& id) {
+  Query query(*database_, "SELECT " SCAN_COLUMNS " FROM scans WHERE patient = ? AND id = ?");
+  if (query.bind(patient, id).next()) return scan_of(query);
+  if (!query.status().ok()) return query.status();
+  return no_scan(patient, id);
+}
+
+absl::StatusOr<std::vector<ScanRecord>> SqliteStore::list_scans(const std::string& patient, const Page& page) {
+  const std::lock_guard lock(mutex_);
+  if (const auto known = read_patient(patient); !known.ok()) return known.status();
+  Query query(*database_, "SELECT " SCAN_COLUMNS " FROM scans WHERE patient = ? AND id > ? ORDER BY id LIMIT ?");
+  query.bind(patient, page.after, page.size);
+  std::vector<ScanRecord> scans;
+  while (query.next()) scans.push_back(scan_of(query));
+  if (!query.status().ok()) return query.status();
+  return scans;
+}
+
+absl::Status SqliteStore::set_scan_received(const std::string& patient, const std::string& id, uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  Query update(*database_, "UPDATE scans SET received_bytes = ? WHERE patient = ? AND id = ?");
+  const absl::Status done = update.bind(bytes, patient, id).run();
+  return done.ok() && database_->changes() == 0 ? no_scan(patient, id) : done;
+}
+
+absl::Status SqliteStore::complete_scan(const std::string& patient, const std::string& id,
+                                        const std::string& report_message) {
+  const std::lock_guard lock(mutex_);
+  Query update(*database_, "UPDATE scans SET complete = 1, report = ? WHERE patient = ? AND id = ?");
+  const absl::Status done = update.bind(report_message, patient, id).run();
+  return done.ok() && database_->changes() == 0 ? no_scan(patient, id) : done;
+}
+
+absl::Status SqliteStore::delete_scan(const std::string& patient, const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  Query count(*database_, "SELECT id FROM models WHERE patient = ? AND scan = ? ORDER BY id LIMIT 1");
+  if (count.bind(patient, id).next()) {
+    return absl::FailedPreconditionError(
+        absl::StrCat(model_name(patient, count.text(0)), " was built from ", scan_name(patient, id)));
+  }
+  Query remove(*database_, "DELETE FROM scans WHERE patient = ? AND id = ?");
+  absl::Status done = remove.bind(patient, id).run();
+  if (done.ok() && database_->changes() == 0) return no_scan(patient, id);
+  done.Update(forget_requests(scan_name(patient, id)));
+  if (done.ok()) done.Update(transaction.commit());
+  return done;
+}
+
+}  // namespace lipofill::server

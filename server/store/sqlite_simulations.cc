@@ -1,0 +1,145 @@
+#include "absl/strings/str_cat.h"
+#include "server/store/sqlite_store.h"
+
+namespace lipofill::server {
+namespace {
+
+#define SIMULATION_COLUMNS "id, model, display_name, spec, state, reason, summary, create_time_us"
+
+SimulationRecord simulation_of(const Query& row) {
+  SimulationRecord simulation;
+  simulation.id = row.text(0);
+  simulation.model = row.text(1);
+  simulation.display_name = row.text(2);
+  simulation.spec_message = row.text(3);
+  simulation.state = static_cast<SimulationState>(row.integer(4));
+  simulation.reason = row.text(5);
+  simulation.summary_message = row.text(6);
+  simulation.create_time_us = row.integer(7);
+  return simulation;
+}
+
+absl::Status no_simulation(const std::string& id) {
+  return absl::NotFoundError(absl::StrCat("there is no ", simulation_name(id)));
+}
+
+}  // namespace
+
+absl::StatusOr<SimulationRecord> SqliteStore::create_simulation(const SimulationRecord& simulation,
+                                                                const RequestKey& request) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  const auto made = read_request(request);
+  if (!made.ok()) return made.status();
+  if (made->has_value()) return read_simulation((**made).substr(simulation_name("").size()));
+  Query insert(*database_, "INSERT INTO simulations (" SIMULATION_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  absl::Status done = insert
+                          .bind(simulation.id, simulation.model, simulation.display_name, simulation.spec_message,
+                                static_cast<int>(simulation.state), simulation.reason, simulation.summary_message,
+                                simulation.create_time_us)
+                          .run();
+  if (absl::IsAlreadyExists(done)) {
+    return absl::AlreadyExistsError(absl::StrCat(simulation_name(simulation.id), " exists"));
+  }
+  done.Update(write_request(request, simulation_name(simulation.id)));
+  if (done.ok()) done.Update(transaction.commit());
+  if (!done.ok()) return done;
+  return simulation;
+}
+
+absl::StatusOr<SimulationRecord> SqliteStore::get_simulation(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  return read_simulation(id);
+}
+
+absl::StatusOr<SimulationRecord> SqliteStore::read_simulation(const std::string& id) {
+  Query query(*database_, "SELECT " SIMULATION_COLUMNS " FROM simulations WHERE id = ?");
+  if (query.bind(id).next()) return simulation_of(query);
+  if (!query.status().ok()) return query.status();
+  return no_simulation(id);
+}
+
+absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_simulations(const Page& page) {
+  const std::lock_guard lock(mutex_);
+  Query query(*database_, "SELECT " SIMULATION_COLUMNS " FROM simulations WHERE id > ? ORDER BY id LIMIT ?");
+  query.bind(page.after, page.size);
+  std::vector<SimulationRecord> simulations;
+  while (query.next()) simulations.push_back(simulation_of(query));
+  if (!query.status().ok()) return query.status();
+  return simulations;
+}
+
+absl::Status SqliteStore::update_simulation_spec(const std::string& id, const std::string& spec_message) {
+  const std::lock_guard lock(mutex_);
+  Query update(*database_, "UPDATE simulations SET spec = ? WHERE id = ?");
+  const absl::Status done = update.bind(spec_message, id).run();
+  return done.ok() && database_->changes() == 0 ? no_simulation(id) : done;
+}
+
+absl::Status SqliteStore::end_simulation(const SimulationRecord& ended, const SimulationResult& result) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  Query update(*database_, "UPDATE simulations SET state = ?, reason = ?, summary = ? WHERE id = ?");
+  absl::Status done = update.bind(static_cast<int>(ended.state), ended.reason, ended.summary_message, ended.id).run();
+  if (done.ok() && database_->changes() == 0) return no_simulation(ended.id);
+  Query insert(*database_, "INSERT OR REPLACE INTO simulation_results VALUES (?, ?, ?)");
+  done.Update(insert.bind(ended.id, result.meshes_message, result.frame_message).run());
+  if (done.ok()) done.Update(transaction.commit());
+  return done;
+}
+
+absl::Status SqliteStore::append_series(const std::string& id, const SeriesChunk& chunk) {
+  const std::lock_guard lock(mutex_);
+  Query insert(*database_, "INSERT INTO simulation_series VALUES (?, ?, ?, ?)");
+  return insert.bind(id, chunk.first_step, chunk.last_step, chunk.rows_message).run();
+}
+
+absl::StatusOr<std::optional<SeriesChunk>> SqliteStore::next_series_chunk(const std::string& id, uint64_t after_step) {
+  const std::lock_guard lock(mutex_);
+  Query query(*database_,
+              "SELECT first_step, last_step, rows FROM simulation_series WHERE simulation = ? AND last_step > ? "
+              "ORDER BY last_step LIMIT 1");
+  if (query.bind(id, after_step).next()) {
+    return SeriesChunk{query.unsigned_integer(0), query.unsigned_integer(1), query.text(2)};
+  }
+  if (!query.status().ok()) return query.status();
+  return std::nullopt;
+}
+
+absl::StatusOr<SimulationResult> SqliteStore::get_result(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const auto simulation = read_simulation(id);
+  if (!simulation.ok()) return simulation.status();
+  Query query(*database_, "SELECT meshes, frame FROM simulation_results WHERE simulation = ?");
+  if (query.bind(id).next()) return SimulationResult{query.text(0), query.text(1)};
+  if (!query.status().ok()) return query.status();
+  return absl::FailedPreconditionError(absl::StrCat(simulation_name(id), " is ", state_name(simulation->state),
+                                                    " and has no result", simulation->reason.empty() ? "" : ": ",
+                                                    simulation->reason));
+}
+
+absl::Status SqliteStore::delete_simulation(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  Query remove(*database_, "DELETE FROM simulations WHERE id = ?");
+  absl::Status done = remove.bind(id).run();
+  if (done.ok() && database_->changes() == 0) return no_simulation(id);
+  done.Update(forget_requests(simulation_name(id)));
+  if (done.ok()) done.Update(transaction.commit());
+  return done;
+}
+
+absl::StatusOr<int> SqliteStore::fail_unended_simulations(const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  Query update(*database_, "UPDATE simulations SET state = ?, reason = ? WHERE state < ?");
+  const absl::Status done =
+      update.bind(static_cast<int>(SimulationState::kFailed), reason, static_cast<int>(SimulationState::kSettled))
+          .run();
+  if (!done.ok()) return done;
+  return database_->changes();
+}
+
+}  // namespace lipofill::server

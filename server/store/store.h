@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "server/store/records.h"
+
+namespace lipofill::server {
+
+/// Patients, scans (their records, not their bytes), models, simulations and their results, durable and transactional:
+/// every call either happens whole or not at all. All calls may come from any thread.
+///
+/// Errors: NOT_FOUND and ALREADY_EXISTS naming the resource, FAILED_PRECONDITION, INVALID_ARGUMENT for a request id
+/// that was used for another request, DATA_LOSS and UNAVAILABLE from the medium. Checked by
+/// tests/unit/server/store_test.cc.
+class Store {
+ public:
+  virtual ~Store() = default;
+
+  /// Creates return the record now in the store: the one given, or the one an equal request made before.
+  virtual absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) = 0;
+  virtual absl::StatusOr<PatientRecord> get_patient(const std::string& id) = 0;
+  virtual absl::StatusOr<std::vector<PatientRecord>> list_patients(const Page& page) = 0;
+  /// Replaces display name and labels.
+  virtual absl::Status update_patient(const PatientRecord& patient) = 0;
+  /// Without `force` FAILED_PRECONDITION while it has scans or models; with it they go too.
+  virtual absl::Status delete_patient(const std::string& id, bool force) = 0;
+
+  virtual absl::StatusOr<ScanRecord> create_scan(const ScanRecord& scan, const RequestKey& request) = 0;
+  virtual absl::StatusOr<ScanRecord> get_scan(const std::string& patient, const std::string& id) = 0;
+  virtual absl::StatusOr<std::vector<ScanRecord>> list_scans(const std::string& patient, const Page& page) = 0;
+  virtual absl::Status set_scan_received(const std::string& patient, const std::string& id, uint64_t bytes) = 0;
+  virtual absl::Status complete_scan(const std::string& patient, const std::string& id,
+                                     const std::string& report_message) = 0;
+  /// FAILED_PRECONDITION while a model was built from it.
+  virtual absl::Status delete_scan(const std::string& patient, const std::string& id) = 0;
+
+  virtual absl::StatusOr<ModelRecord> create_model(const ModelRecord& model, const RequestKey& request) = 0;
+  virtual absl::StatusOr<ModelRecord> get_model(const std::string& patient, const std::string& id) = 0;
+  virtual absl::StatusOr<std::vector<ModelRecord>> list_models(const std::string& patient, const Page& page) = 0;
+  virtual absl::Status delete_model(const std::string& patient, const std::string& id) = 0;
+
+  virtual absl::StatusOr<SimulationRecord> create_simulation(const SimulationRecord& simulation,
+                                                             const RequestKey& request) = 0;
+  virtual absl::StatusOr<SimulationRecord> get_simulation(const std::string& id) = 0;
+  virtual absl::StatusOr<std::vector<SimulationRecord>> list_simulations(const Page& page) = 0;
+  virtual absl::Status update_simulation_spec(const std::string& id, const std::string& spec_message) = 0;
+  /// State, reason, summary and result in one go.
+  virtual absl::Status end_simulation(const SimulationRecord& ended, const SimulationResult& result) = 0;
+  virtual absl::Status append_series(const std::string& id, const SeriesChunk& chunk) = 0;
+  /// The chunk that holds the first step after `after_step`; none when there is no later one.
+  virtual absl::StatusOr<std::optional<SeriesChunk>> next_series_chunk(const std::string& id, uint64_t after_step) = 0;
+  /// FAILED_PRECONDITION when it ended without one.
+  virtual absl::StatusOr<SimulationResult> get_result(const std::string& id) = 0;
+  virtual absl::Status delete_simulation(const std::string& id) = 0;
+  /// Marks every simulation that has not ended FAILED; for the start of a daemon. Returns how many there were.
+  virtual absl::StatusOr<int> fail_unended_simulations(const std::string& reason) = 0;
+
+  /// The name an earlier, equal request made, if any.
+  virtual absl::StatusOr<std::optional<std::string>> find_request(const RequestKey& request) = 0;
+};
+
+}  // namespace lipofill::server

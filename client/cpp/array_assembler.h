@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "client/cpp/arrays.h"
+#include "lipofill/v1/frame_service.pb.h"
+
+namespace lipofill::client {
+
+/// Puts slices together to whole arrays. Never holds more than what was received: a slice that claims a huge array
+/// costs nothing. Checked by tests/unit/client/array_assembler_test.cc.
+class ArrayAssembler {
+ public:
+  /// DATA_LOSS for a slice that does not follow the one before it, or that goes beyond the array's own shape.
+  absl::Status add(const v1::ArraySlice& slice);
+
+  /// The arrays in the order they came, and starts anew. DATA_LOSS where bytes are missing.
+  absl::StatusOr<std::vector<Array>> take();
+
+ private:
+  std::vector<Array> arrays_;
+};
+
+}  // namespace lipofill::client

@@ -1,0 +1,142 @@
+#include "client/cpp/frame_watcher.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "client/cpp/array_assembler.h"
+#include "lipofill/v1/frame_service.grpc.pb.h"
+#include "lipofill/v1/patient_service.grpc.pb.h"
+
+namespace lipofill::client {
+namespace {
+
+/// Puts the messages of one stream together to meshes and frames.
+class StreamAssembler {
+ public:
+  StreamAssembler(v1::WatchRequest& request, const WatchHandlers& handlers) : request_(request), handlers_(handlers) {}
+
+  absl::Status add(const v1::WatchResponse& response) {
+    if (response.has_mesh()) return add_mesh(response.mesh());
+    if (response.has_frame()) return add_frame(response.frame());
+    return absl::OkStatus();
+  }
+
+  bool ended() const { return ended_; }
+  bool moved() const { return moved_; }
+
+ private:
+  absl::Status add_mesh(const v1::MeshSlice& slice) {
+    for (const v1::ArraySlice& array : slice.arrays()) {
+      if (auto status = mesh_.add(array); !status.ok()) return status;
+    }
+    if (!slice.last()) return absl::OkStatus();
+    auto arrays = mesh_.take();
+    if (!arrays.ok()) return arrays.status();
+    request_.set_known_topology_hash(slice.topology_hash());
+    moved_ = true;
+    return handlers_.on_meshes({slice.topology_hash(), *std::move(arrays)});
+  }
+
+  absl::Status add_frame(const v1::FrameSlice& slice) {
+    for (const v1::ArraySlice& array : slice.fields()) {
+      if (auto status = frame_.add(array); !status.ok()) return status;
+    }
+    if (!slice.last()) return absl::OkStatus();
+    auto fields = frame_.take();
+    if (!fields.ok()) return fields.status();
+    request_.set_seen_epoch(slice.epoch());
+    request_.set_seen_sequence(slice.sequence());
+    moved_ = true;
+    ended_ = slice.end();
+    return handlers_.on_frame(
+        {slice.epoch(), slice.sequence(), slice.time_s(), slice.skipped_frames(), slice.end(), *std::move(fields)});
+  }
+
+  v1::WatchRequest& request_;  // told what has been seen, for taking up a broken stream
+  const WatchHandlers& handlers_;
+  ArrayAssembler mesh_;
+  ArrayAssembler frame_;
+  bool ended_ = false;
+  bool moved_ = false;
+};
+
+/// One stream to its end. `moved` says whether anything whole came.
+absl::Status watch_once(const Connection& connection, v1::WatchRequest& request, const WatchHandlers& handlers,
+                        bool* moved, bool* is_wire_error) {
+  const auto stub = v1::FrameService::NewStub(connection.channel());
+  grpc::ClientContext context;
+  std::stop_callback cancel(connection.stop(), [&context] { context.TryCancel(); });
+  // Reading changes the request, so the stream is opened with a copy.
+  const v1::WatchRequest opened = request;
+  const auto reader = stub->Watch(&context, opened);
+  StreamAssembler assembler(request, handlers);
+  v1::WatchResponse response;
+  absl::Status status;
+  while (status.ok() && reader->Read(&response)) status = assembler.add(response);
+  *moved = assembler.moved();
+  if (!status.ok()) context.TryCancel();
+  const grpc::Status finished = reader->Finish();
+  *is_wire_error = status.ok() && !finished.ok();
+  if (!status.ok()) return status;
+  return status_of(finished, connection.server());
+}
+
+bool can_resume(const absl::Status& status) {
+  return absl::IsUnavailable(status) || absl::IsResourceExhausted(status) || absl::IsAborted(status);
+}
+
+/// Waits unless the stop comes first; true when it did.
+bool stopped_within(const std::stop_token& stop, std::chrono::milliseconds time) {
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock lock(mutex);
+  return wake.wait_for(lock, stop, time, [&stop] { return stop.stop_requested(); });
+}
+
+}  // namespace
+
+absl::Status watch(const Connection& connection, v1::WatchRequest request, const WatchHandlers& handlers) {
+  bool seen_any = false;
+  for (int resumes = 0;;) {
+    bool moved = false;
+    bool is_wire_error = false;
+    const absl::Status status = watch_once(connection, request, handlers, &moved, &is_wire_error);
+    seen_any = seen_any || moved;
+    resumes = moved ? 0 : resumes + 1;
+    if (status.ok() || !is_wire_error || !can_resume(status) || !seen_any || resumes > kMaxResumes) return status;
+    if (handlers.on_resume) handlers.on_resume(status);
+    if (stopped_within(connection.stop(), std::chrono::milliseconds(100 * (resumes + 1)))) {
+      return absl::CancelledError("interrupted");
+    }
+  }
+}
+
+absl::StatusOr<Meshes> download_model_mesh(const Connection& connection, const std::string& model) {
+  const auto stub = v1::PatientService::NewStub(connection.channel());
+  grpc::ClientContext context;
+  std::stop_callback cancel(connection.stop(), [&context] { context.TryCancel(); });
+  v1::DownloadModelMeshRequest request;
+  request.set_name(model);
+  const auto reader = stub->DownloadModelMesh(&context, request);
+  ArrayAssembler assembler;
+  Meshes meshes;
+  v1::MeshSlice slice;
+  absl::Status status;
+  while (status.ok() && reader->Read(&slice)) {
+    meshes.topology_hash = slice.topology_hash();
+    for (int i = 0; status.ok() && i < slice.arrays_size(); ++i) status = assembler.add(slice.arrays(i));
+  }
+  if (!status.ok()) context.TryCancel();
+  const absl::Status finished = status_of(reader->Finish(), connection.server());
+  if (!status.ok()) return status;
+  if (!finished.ok()) return finished;
+  auto arrays = assembler.take();
+  if (!arrays.ok()) return arrays.status();
+  meshes.arrays = *std::move(arrays);
+  return meshes;
+}
+
+}  // namespace lipofill::client

@@ -1,0 +1,131 @@
+#include "client/cpp/json_message.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "client/cpp/errors.h"
+#include "client/cpp/json_file.h"
+
+namespace lipofill::client {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using nlohmann::json;
+
+/// Levenshtein distance, for suggestions.
+size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
+    }
+  }
+  return row.back();
+}
+
+const FieldDescriptor* find_field(const Descriptor& type, const std::string& key) {
+  if (const FieldDescriptor* field = type.FindFieldByName(key)) return field;
+  return type.FindFieldByCamelcaseName(key);
+}
+
+std::string describe_unknown(const Descriptor& type, const std::string& key) {
+  std::string names;
+  const FieldDescriptor* nearest = nullptr;
+  size_t nearest_distance = std::max<size_t>(key.size() / 2, 2);
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor* field = type.field(i);
+    absl::StrAppend(&names, i == 0 ? "" : ", ", field->name());
+    const bool begins_alike = key.size() >= 3 && (field->name().starts_with(key) || key.starts_with(field->name()));
+    const size_t distance = begins_alike ? 0 : edit_distance(key, field->name());
+    if (distance <= nearest_distance) {
+      nearest = field;
+      nearest_distance = distance;
+    }
+  }
+  if (nearest != nullptr) return absl::StrCat("no such field; did you mean ", nearest->name(), "?");
+  return absl::StrCat("no such field; ", type.name(), " has ", names);
+}
+
+void find_unknown_fields(const json& value, const Descriptor& type, const std::string& path,
+                         std::vector<FieldViolation>* violations);
+
+void find_unknown_in_field(const json& value, const FieldDescriptor& field, const std::string& path,
+                           std::vector<FieldViolation>* violations) {
+  if (field.cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) return;
+  if (field.is_map()) {
+    const FieldDescriptor* mapped = field.message_type()->map_value();
+    if (!value.is_object()) return;
+    for (const auto& [key, entry] : value.items()) {
+      find_unknown_in_field(entry, *mapped, absl::StrCat(path, "[", key, "]"), violations);
+    }
+  } else if (field.is_repeated() && value.is_array()) {
+    for (size_t i = 0; i < value.size(); ++i) {
+      find_unknown_fields(value[i], *field.message_type(), absl::StrCat(path, "[", i, "]"), violations);
+    }
+  } else {
+    find_unknown_fields(value, *field.message_type(), path, violations);
+  }
+}
+
+/// The recursion is as deep as the schema, which has no message inside itself.
+void find_unknown_fields(const json& value, const Descriptor& type, const std::string& path,
+                         std::vector<FieldViolation>* violations) {
+  // Timestamps and the like have a JSON form of their own.
+  if (!value.is_object() || type.file()->package() == "google.protobuf") return;
+  for (const auto& [key, entry] : value.items()) {
+    const std::string field_path = path.empty() ? key : absl::StrCat(path, ".", key);
+    const FieldDescriptor* field = find_field(type, key);
+    if (field == nullptr) {
+      violations->push_back({field_path, describe_unknown(type, key)});
+    } else {
+      find_unknown_in_field(entry, *field, field_path, violations);
+    }
+  }
+}
+
+std::string to_json(const google::protobuf::Message& message, bool whitespace) {
+  google::protobuf::util::JsonPrintOptions options;
+  options.add_whitespace = whitespace;
+  options.preserve_proto_field_names = true;
+  options.always_print_primitive_fields = true;
+  std::string text;
+  // Fails only for an Any of a type this program does not know, which then prints as nothing.
+  (void)google::protobuf::util::MessageToJsonString(message, &text, options);
+  return text;
+}
+
+}  // namespace
+
+absl::Status load_message(const std::filesystem::path& path, google::protobuf::Message* message) {
+  const auto document = read_json_file(path);
+  if (!document.ok()) return document.status();
+  if (!document->is_object()) return absl::InvalidArgumentError(absl::StrCat(path.string(), " is not a JSON object"));
+  std::vector<FieldViolation> violations;
+  find_unknown_fields(*document, *message->GetDescriptor(), "", &violations);
+  if (!violations.empty()) {
+    for (FieldViolation& violation : violations) absl::StrAppend(&violation.description, " (in ", path.string(), ")");
+    return invalid_fields(absl::StrCat(path.string(), " has unknown fields"), violations);
+  }
+  const auto parsed = google::protobuf::util::JsonStringToMessage(document->dump(), message);
+  if (!parsed.ok()) return absl::InvalidArgumentError(absl::StrCat(path.string(), ": ", std::string(parsed.message())));
+  return absl::OkStatus();
+}
+
+std::string message_json(const google::protobuf::Message& message) {
+  return to_json(message, true);
+}
+std::string message_json_line(const google::protobuf::Message& message) {
+  return to_json(message, false) + "\n";
+}
+
+}  // namespace lipofill::client

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "client/cpp/connection.h"
+#include "lipofill/v1/operation_service.pb.h"
+#include "lipofill/v1/patient_service.pb.h"
+
+namespace lipofill::client {
+
+/// What the operation is doing, and how far it is in [0, 1].
+using BuildProgress = std::function<void(const std::string&, double)>;
+
+/// Waits for an operation to be done, telling every progress. The operation's own error is the error of the call.
+/// When the connection's stop is asked for, the operation is cancelled: CANCELLED.
+absl::StatusOr<v1::Operation> wait_operation(const Connection& connection, v1::Operation operation,
+                                             const BuildProgress& progress = {});
+
+/// Builds a model and waits for it.
+/// Checked by tests/integration/cli/.
+absl::StatusOr<v1::Model> build_model(const Connection& connection, const v1::BuildModelRequest& request,
+                                      const BuildProgress& progress = {});
+
+}  // namespace lipofill::client

@@ -1,0 +1,33 @@
+#include "client/cpp/plan_file.h"
+
+#include "absl/strings/str_cat.h"
+#include "client/cpp/errors.h"
+#include "client/cpp/json_message.h"
+#include "client/cpp/landmarks_file.h"
+
+namespace lipofill::client {
+
+absl::StatusOr<PlanFile> load_plan(const std::filesystem::path& path) {
+  PlanFile file;
+  file.path = path;
+  if (auto status = load_message(path, &file.plan); !status.ok()) return status;
+  const std::filesystem::path folder = path.parent_path();
+  const v1::ScanFile& scan = file.plan.scan();
+  if (!scan.file().empty()) file.scan_file = folder / scan.file();
+  if (!scan.landmarks_file().empty()) file.landmarks_file = (folder / scan.landmarks_file()).string();
+  return file;
+}
+
+absl::Status load_plan_landmarks(PlanFile* plan) {
+  if (!plan->landmarks_file) return absl::OkStatus();
+  if (!plan->plan.model().has_scan_region()) {
+    return invalid_fields(absl::StrCat(plan->path.string(), ": landmarks without a scan region"),
+                          {{"scan.landmarks_file", "is given, but model.scan_region is not"}});
+  }
+  const auto landmarks = load_landmarks(*plan->landmarks_file, plan->plan.scan().unit());
+  if (!landmarks.ok()) return landmarks.status();
+  set_landmarks(*landmarks, plan->plan.mutable_model()->mutable_scan_region());
+  return absl::OkStatus();
+}
+
+}  // namespace lipofill::client

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "lipofill/v1/plan.pb.h"
+
+namespace lipofill::client {
+
+/// A plan as it is in its file, and where the files it names are.
+struct PlanFile {
+  std::filesystem::path path;
+  v1::Plan plan;
+  std::optional<std::filesystem::path> scan_file;
+  std::optional<std::string> landmarks_file;  ///< may end in #object
+};
+
+/// Reads a plan: the proto3 JSON form of lipofill.v1.Plan. Files it names are taken relative to it. Fields are checked
+/// against the schema; what they mean is checked by the daemon. INVALID_ARGUMENT naming the file, and as violations
+/// each unknown field by its path, with the nearest known name. Checked by tests/unit/client/plan_file_test.cc.
+absl::StatusOr<PlanFile> load_plan(const std::filesystem::path& path);
+
+/// Puts the landmarks file's landmarks and axes into the plan's scan region; does nothing without one.
+absl::Status load_plan_landmarks(PlanFile* plan);
+
+}  // namespace lipofill::client

@@ -1,0 +1,123 @@
+#include "client/cpp/result_text.h"
+
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+
+namespace lipofill::client {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return error == std::errc() ? std::string(text, end) : "nan";
+}
+
+std::string series_header(const v1::SimulationSpec& spec) {
+  std::string header =
+      "step,time_s,step_ms,injected_ml,film_volume_ml,gap_volume_ml,max_pressure_pa,min_pressure_pa,max_thickness_mm,"
+      "skin_max_displacement_mm,skin_speed_mm_per_s";
+  for (const v1::Probe& probe : spec.probes()) {
+    absl::StrAppend(&header, ",probe_", probe.name(), "_thickness_mm,probe_", probe.name(), "_pressure_pa");
+  }
+  return header + ",wall_ms\n";
+}
+
+}  // namespace
+
+std::string summary_json(const std::string& plan, const v1::Simulation& simulation) {
+  const v1::Summary& summary = simulation.summary();
+  nlohmann::ordered_json zones = nlohmann::ordered_json::array();
+  for (const v1::ZoneSummary& zone : summary.zones()) {
+    zones.push_back({{"name", zone.name()},
+                     {"volume_ml", zone.volume_ml()},
+                     {"mean_pressure_pa", zone.mean_pressure_pa()},
+                     {"max_thickness_mm", zone.max_thickness_mm()}});
+  }
+  const nlohmann::ordered_json document = {
+      {"plan", plan},
+      {"state", state_name(simulation.state())},
+      {"reason", simulation.reason()},
+      {"steps", summary.steps()},
+      {"time_s", summary.time_s()},
+      {"wall_s", summary.wall_s()},
+      {"step_ms_median", summary.step_ms_median()},
+      {"hexahedra", summary.hexahedra()},
+      {"film_cells", summary.film_cells()},
+      {"dofs", summary.dofs()},
+      {"injected_ml", summary.injected_ml()},
+      {"film_volume_ml", summary.film_volume_ml()},
+      {"gap_volume_ml", summary.gap_volume_ml()},
+      {"film_volume_relative_error", summary.film_volume_relative_error()},
+      {"gap_volume_relative_error", summary.gap_volume_relative_error()},
+      {"max_pressure_pa", summary.max_pressure_pa()},
+      {"min_pressure_pa", summary.min_pressure_pa()},
+      {"mean_pressure_pa", summary.mean_pressure_pa()},
+      {"max_thickness_mm", summary.max_thickness_mm()},
+      {"skin_max_displacement_mm", summary.skin_max_displacement_mm()},
+      {"skin_volume_change_ml", summary.skin_volume_change_ml()},
+      {"min_scaled_jacobian", summary.min_scaled_jacobian()},
+      {"state_hash", summary.state_hash()},
+      {"zones", zones},
+  };
+  return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string summary_text(const std::string& plan, const v1::Simulation& simulation) {
+  const v1::Summary& s = simulation.summary();
+  std::string text = absl::StrFormat("%s: %s", plan, state_name(simulation.state()));
+  if (!simulation.reason().empty()) absl::StrAppend(&text, " (", simulation.reason(), ")");
+  absl::StrAppendFormat(&text,
+                        "\n  time         %.2f s simulated in %u steps; %.1f s of computing, median step %.1f ms\n",
+                        s.time_s(), s.steps(), s.wall_s(), s.step_ms_median());
+  absl::StrAppendFormat(&text, "  model        %u hexahedra, %u film cells, %u unknowns; worst scaled Jacobian %.2f\n",
+                        s.hexahedra(), s.film_cells(), s.dofs(), s.min_scaled_jacobian());
+  absl::StrAppendFormat(&text,
+                        "  fat          %.3f mL injected; film %.3f mL, gap %.3f mL (relative errors %.1e, %.1e)\n",
+                        s.injected_ml(), s.film_volume_ml(), s.gap_volume_ml(), s.film_volume_relative_error(),
+                        s.gap_volume_relative_error());
+  absl::StrAppendFormat(&text, "  pressure     mean %.2f kPa, from %.2f to %.2f kPa (%.1f mmHg at most)\n",
+                        s.mean_pressure_pa() / 1e3, s.min_pressure_pa() / 1e3, s.max_pressure_pa() / 1e3,
+                        s.max_pressure_pa() / 133.322);
+  absl::StrAppendFormat(&text, "  film         %.2f mm thick at most\n", s.max_thickness_mm());
+  absl::StrAppendFormat(&text, "  skin         moved %.2f mm at most; volume changed by %.2f mL\n",
+                        s.skin_max_displacement_mm(), s.skin_volume_change_ml());
+  for (const v1::ZoneSummary& zone : s.zones()) {
+    absl::StrAppendFormat(&text, "  zone %-24s %.2f mL, %.2f kPa mean, %.2f mm at most\n", zone.name(),
+                          zone.volume_ml(), zone.mean_pressure_pa() / 1e3, zone.max_thickness_mm());
+  }
+  return absl::StrCat(text, kNotAMedicalDevice, "\n");
+}
+
+std::string series_csv(const v1::SimulationSpec& spec, const std::vector<v1::SeriesRow>& rows) {
+  std::string csv = series_header(spec);
+  for (const v1::SeriesRow& row : rows) {
+    absl::StrAppend(&csv, row.step());
+    for (double value : {row.time_s(), row.step_ms(), row.injected_ml(), row.film_volume_ml(), row.gap_volume_ml(),
+                         row.max_pressure_pa(), row.min_pressure_pa(), row.max_thickness_mm(),
+                         row.skin_max_displacement_mm(), row.skin_speed_mm_per_s()}) {
+      absl::StrAppend(&csv, ",", number(value));
+    }
+    // A row without the probe leaves its columns empty, so that the columns after it keep their place.
+    for (int i = 0; i < spec.probes_size(); ++i) {
+      absl::StrAppend(&csv, ",", i < row.probe_thickness_mm_size() ? number(row.probe_thickness_mm(i)) : "");
+      absl::StrAppend(&csv, ",", i < row.probe_pressure_pa_size() ? number(row.probe_pressure_pa(i)) : "");
+    }
+    absl::StrAppend(&csv, ",", number(row.wall_ms()), "\n");
+  }
+  return csv;
+}
+
+std::string progress_text(const v1::SeriesRow& row) {
+  return absl::StrFormat("step %d  %.2f s  %.2f mL  max %.2f kPa  skin %.2f mm, %.3f mm/s", row.step(), row.time_s(),
+                         row.injected_ml(), row.max_pressure_pa() / 1e3, row.skin_max_displacement_mm(),
+                         row.skin_speed_mm_per_s());
+}
+
+std::string state_name(v1::Simulation::State state) {
+  return v1::Simulation::State_Name(state);
+}
+
+}  // namespace lipofill::client

@@ -1,0 +1,175 @@
+#include "core/geometry/face_geometry.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/field_violations.h"
+#include "core/geometry/extrusion.h"
+#include "core/geometry/scan_region.h"
+#include "core/geometry/skin_projection.h"
+#include "core/geometry/surface_chart.h"
+#include "core/geometry/surface_topology.h"
+
+namespace lipofill::geometry {
+namespace {
+
+constexpr int kMinDivisions = 2;
+constexpr int kMaxDivisions = 512;
+constexpr int kMaxLayers = 8;
+constexpr int kMaxElementsThrough = 16;
+constexpr long long kMaxHexahedra = 400'000;
+constexpr double kThickestLayerMm = 100.0;
+constexpr double kShortestSquareMm = 1.0;
+constexpr double kLongestSquareMm = 1000.0;
+
+void check_layer(const LayerGeometry& layer, const std::string& field, FieldViolations& violations) {
+  violations.check_range(field + ".elements_through", layer.elements_through, 1, kMaxElementsThrough, "");
+  const absl::Status shape = layer.thickness.validate();
+  violations.absorb(field + ".thickness_mm", shape);
+  if (!shape.ok()) return;
+  const double thinnest = layer.thickness.minimum() * 1e3;
+  const double thickest = layer.thickness.maximum() * 1e3;
+  if (thinnest > 0.0 && thickest <= kThickestLayerMm) return;
+  violations.add(field + ".thickness_mm", absl::StrCat("is ", thinnest > 0.0 ? thickest : thinnest,
+                                                       " mm, must be above 0 and at most ", kThickestLayerMm));
+}
+
+void check_layers(const FaceGeometrySpec& spec, FieldViolations& violations) {
+  if (spec.layers.size() > kMaxLayers) {
+    violations.add("layers", absl::StrCat("are ", spec.layers.size(), ", must be at most ", kMaxLayers));
+    return;
+  }
+  long long through = 0;
+  for (size_t l = 0; l < spec.layers.size(); ++l) {
+    check_layer(spec.layers[l], absl::StrCat("layers[", l, "]"), violations);
+    through += spec.layers[l].elements_through;
+  }
+  if (!violations.empty()) return;
+  const long long hexahedra = through * spec.n_xi * spec.n_eta;
+  if (hexahedra > kMaxHexahedra) {
+    violations.add("n_xi", absl::StrCat("is ", spec.n_xi, ", which with n_eta ", spec.n_eta, " and ", through,
+                                        " elements through the layers makes ", hexahedra, " hexahedra, must be at most ",
+                                        kMaxHexahedra));
+  }
+}
+
+absl::Status check_spec(const FaceGeometrySpec& spec) {
+  FieldViolations violations;
+  violations.check_range("n_xi", spec.n_xi, kMinDivisions, kMaxDivisions, "");
+  violations.check_range("n_eta", spec.n_eta, kMinDivisions, kMaxDivisions, "");
+  if (const auto* square = std::get_if<SquareSpec>(&spec.region)) {
+    violations.check_range("square.length_xi_mm", square->length_xi * 1e3, kShortestSquareMm, kLongestSquareMm, "mm");
+    violations.check_range("square.length_eta_mm", square->length_eta * 1e3, kShortestSquareMm, kLongestSquareMm, "mm");
+  }
+  check_layers(spec, violations);
+  return violations.to_status();
+}
+
+absl::Status report(const Progress& progress, double fraction, const char* stage) {
+  if (!progress || progress(fraction, stage)) return absl::OkStatus();
+  return absl::CancelledError("building the geometry was cancelled");
+}
+
+/// Area of the bilinear skin, by the two-point Gauss rule in each cell [m2].
+double compute_skin_area(const LayeredGrid& grid) {
+  const double near = 0.5 - 0.5 / std::sqrt(3.0);
+  double area = 0.0;
+  for (int j = 0; j < grid.n_eta; ++j) {
+    for (int i = 0; i < grid.n_xi; ++i) {
+      const Eigen::Vector3d a = grid.nodes.col(grid.surface_index(i, j));
+      const Eigen::Vector3d b = grid.nodes.col(grid.surface_index(i + 1, j)) - a;
+      const Eigen::Vector3d c = grid.nodes.col(grid.surface_index(i, j + 1)) - a;
+      const Eigen::Vector3d d = grid.nodes.col(grid.surface_index(i + 1, j + 1)) - a - b - c;
+      for (const double r : {near, 1.0 - near}) {
+        for (const double s : {near, 1.0 - near}) area += 0.25 * (b + s * d).cross(c + r * d).norm();
+      }
+    }
+  }
+  return area;
+}
+
+absl::StatusOr<FaceGeometry> build_square(const SquareSpec& square, const FaceGeometrySpec& spec) {
+  Eigen::Matrix3Xd skin(3, (spec.n_xi + 1) * (spec.n_eta + 1));
+  for (int j = 0; j <= spec.n_eta; ++j) {
+    for (int i = 0; i <= spec.n_xi; ++i) {
+      skin.col(j * (spec.n_xi + 1) + i) =
+          Eigen::Vector3d(square.length_xi * i / spec.n_xi, square.length_eta * j / spec.n_eta, 0.0);
+    }
+  }
+  auto grid = extrude_layers(skin, spec.n_xi, spec.n_eta, spec.layers);
+  if (!grid.ok()) return grid.status();
+  FaceGeometry geometry;
+  geometry.grid = std::move(*grid);
+  geometry.skin_area = square.length_xi * square.length_eta;
+  return geometry;
+}
+
+/// Half the mean edge of the scan in the patch: facets of that length fade from the skin, anatomy does not.
+double choose_smoothing_length(const SurfaceMesh& patch, const Eigen::Vector2d& spacing) {
+  std::vector<double> lengths;
+  for (const EdgeUse& use : sort_edge_uses(patch)) {
+    lengths.push_back((patch.points.col(use.high) - patch.points.col(use.low)).norm());
+  }
+  std::nth_element(lengths.begin(), lengths.begin() + static_cast<long>(lengths.size() / 2), lengths.end());
+  return 0.5 * std::max(lengths[lengths.size() / 2], spacing.maxCoeff());
+}
+
+/// Scan vertices over the region, with their feet on the skin.
+void find_riders(const ScanRegion& region, FaceGeometry& geometry) {
+  std::vector<bool> in_patch(geometry.scan.n_vertices() + 1, false);
+  for (const int v : region.patch.whole_of_vertex) {
+    if (v >= 0) in_patch[v] = true;
+  }
+  const SkinProjection projection(geometry.grid);
+  for (int v = 0; v < geometry.scan.n_vertices(); ++v) {
+    const int cleaned = region.cleaned_of_scan[v];
+    if (cleaned < 0 || !in_patch[cleaned]) continue;
+    const SkinFoot foot = projection.project(geometry.scan.points.col(v));
+    if (!(std::max(std::abs(foot.place.xi - 0.5), std::abs(foot.place.eta - 0.5)) <= 0.5)) continue;
+    if (foot.distance > kFarthestFromSkin) continue;
+    geometry.riders.push_back({v, foot.place});
+    geometry.max_rider_distance = std::max(geometry.max_rider_distance, foot.distance);
+  }
+}
+
+absl::StatusOr<FaceGeometry> build_scan_region(const ScanRegionSpec& scan, const FaceGeometrySpec& spec,
+                                               const Progress& progress) {
+  auto region = find_scan_region(scan, progress);
+  if (!region.ok()) return region.status();
+  if (const absl::Status go = report(progress, 0.6, "charting the skin"); !go.ok()) return go;
+  auto skin = chart_region(region->patch, spec.n_xi, spec.n_eta);
+  if (!skin.ok()) return skin.status();
+  const Eigen::Vector2d spacing = compute_mean_spacing(spec.n_xi, spec.n_eta, *skin);
+  smooth_over_grid(spec.n_xi, spec.n_eta, spacing, choose_smoothing_length(region->patch.mesh, spacing), *skin);
+
+  if (const absl::Status go = report(progress, 0.8, "extruding the layers"); !go.ok()) return go;
+  auto grid = extrude_layers(*skin, spec.n_xi, spec.n_eta, spec.layers);
+  if (!grid.ok()) return grid.status();
+  FaceGeometry geometry;
+  geometry.grid = std::move(*grid);
+  geometry.scan = scan.scan;
+  geometry.axes = region->axes;
+  geometry.landmarks = scan.landmarks;
+  geometry.scan_remarks = region->remarks;
+  geometry.skin_area = compute_skin_area(geometry.grid);
+  if (const absl::Status go = report(progress, 0.9, "placing the scan on the skin"); !go.ok()) return go;
+  find_riders(*region, geometry);
+  return geometry;
+}
+
+}  // namespace
+
+absl::StatusOr<FaceGeometry> build_face_geometry(const FaceGeometrySpec& spec, const Progress& progress) {
+  const absl::Status valid = check_spec(spec);
+  if (!valid.ok()) return valid;
+  auto geometry = std::holds_alternative<SquareSpec>(spec.region)
+                      ? build_square(std::get<SquareSpec>(spec.region), spec)
+                      : build_scan_region(std::get<ScanRegionSpec>(spec.region), spec, progress);
+  if (!geometry.ok()) return geometry;
+  if (const absl::Status go = report(progress, 1.0, "done"); !go.ok()) return go;
+  return geometry;
+}
+
+}  // namespace lipofill::geometry

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace lipofill::geometry {
+
+enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
+enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
+
+size_t size_of(PlyType type);
+
+struct PlyProperty {
+  std::string name;
+  bool is_list = false;
+  PlyType count_type = PlyType::kUint8;  ///< of a list
+  PlyType type = PlyType::kFloat32;      ///< of the value, or of each item of the list
+};
+
+struct PlyElement {
+  std::string name;
+  unsigned long long count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::kAscii;
+  std::vector<PlyElement> elements;
+  size_t body_offset = 0;  ///< [bytes]
+  size_t body_line = 0;    ///< lines before the body
+};
+
+/// The header of a PLY file. Every element's count is checked against the bytes that follow, so that no count can make a reader
+/// loop or reserve beyond the file.
+absl::StatusOr<PlyHeader> parse_ply_header(std::string_view bytes);
+
+}  // namespace lipofill::geometry

@@ -1,0 +1,114 @@
+#include "core/geometry/surface_distance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/surface_locator.h"
+#include "core/geometry/surface_topology.h"
+
+namespace lipofill::geometry {
+namespace {
+
+constexpr double kOnEdge = 1e-7;  // of a barycentric coordinate
+
+/// Signs distances with the normal of the nearest face, edge or vertex, those of edges and vertices weighted by the angles
+/// around them: the sign is then right everywhere (Baerentzen & Aanaes 2005).
+class DistanceSigner {
+ public:
+  explicit DistanceSigner(const SurfaceMesh& surface)
+      : surface_(surface), vertex_normals_(compute_vertex_normals(surface)), across_(find_neighbours(surface).across) {}
+
+  double sign(const SurfacePoint& nearest, const Eigen::Vector3d& point) const {
+    return normal_at(nearest).dot(point - nearest.position) < 0.0 ? -nearest.distance : nearest.distance;
+  }
+
+  /// Whether the nearest point lies on the border of the surface.
+  bool is_on_border(const SurfacePoint& nearest, const std::vector<bool>& is_border_vertex) const {
+    const Eigen::Vector3d b = compute_barycentric(surface_, nearest.triangle, nearest.position);
+    for (int k = 0; k < 3; ++k) {
+      if (across_[nearest.triangle][k] < 0 && b[(k + 2) % 3] < kOnEdge) return true;
+      if (b[k] > 1.0 - kOnEdge && is_border_vertex[surface_.triangles[nearest.triangle][k]]) return true;
+    }
+    return false;
+  }
+
+  std::vector<bool> find_border_vertices() const {
+    std::vector<bool> border(surface_.n_vertices(), false);
+    for (int t = 0; t < surface_.n_triangles(); ++t) {
+      for (int k = 0; k < 3; ++k) {
+        if (across_[t][k] >= 0) continue;
+        border[surface_.triangles[t][k]] = border[surface_.triangles[t][(k + 1) % 3]] = true;
+      }
+    }
+    return border;
+  }
+
+ private:
+  Eigen::Vector3d face_normal(int t) const { return compute_area_vector(surface_, surface_.triangles[t]).normalized(); }
+
+  Eigen::Vector3d normal_at(const SurfacePoint& nearest) const {
+    const Eigen::Vector3d b = compute_barycentric(surface_, nearest.triangle, nearest.position);
+    for (int k = 0; k < 3; ++k) {
+      if (b[k] > 1.0 - kOnEdge) return vertex_normals_.col(surface_.triangles[nearest.triangle][k]);
+    }
+    Eigen::Vector3d normal = face_normal(nearest.triangle);
+    for (int k = 0; k < 3; ++k) {
+      const int neighbour = across_[nearest.triangle][k];
+      if (b[(k + 2) % 3] < kOnEdge && neighbour >= 0) normal += face_normal(neighbour);
+    }
+    return normal;
+  }
+
+  const SurfaceMesh& surface_;
+  Eigen::Matrix3Xd vertex_normals_;
+  Across across_;
+};
+
+}  // namespace
+
+std::vector<double> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface) {
+  std::vector<double> distances(static_cast<size_t>(points.cols()), 0.0);
+  if (surface.triangles.empty()) return distances;
+  const SurfaceLocator locator(surface);
+  const DistanceSigner signer(surface);
+  for (Eigen::Index k = 0; k < points.cols(); ++k) {
+    distances[static_cast<size_t>(k)] = signer.sign(locator.find_nearest(points.col(k)), points.col(k));
+  }
+  return distances;
+}
+
+DistanceStatistics compute_distance_statistics(const std::vector<double>& distances) {
+  DistanceStatistics statistics;
+  if (distances.empty()) return statistics;
+  std::vector<double> magnitudes;
+  for (const double d : distances) magnitudes.push_back(std::abs(d));
+  std::sort(magnitudes.begin(), magnitudes.end());
+  double squares = 0.0;
+  for (const double d : magnitudes) statistics.mean += d, squares += d * d;
+  const auto n = static_cast<double>(magnitudes.size());
+  statistics.mean /= n;
+  statistics.rms = std::sqrt(squares / n);
+  statistics.max = magnitudes.back();
+  // The smallest value that at least 95 % do not exceed.
+  statistics.p95 = magnitudes[static_cast<size_t>(std::ceil(0.95 * n)) - 1];
+  return statistics;
+}
+
+PatchDistance compute_patch_distance(const SurfaceMesh& patch, const SurfaceMesh& target) {
+  PatchDistance result;
+  result.patch_to_target = compute_signed_distances(patch.points, target);
+  result.patch_to_target_statistics = compute_distance_statistics(result.patch_to_target);
+  if (patch.triangles.empty()) return result;
+  const SurfaceLocator locator(patch);
+  const DistanceSigner signer(patch);
+  const std::vector<bool> border = signer.find_border_vertices();
+  std::vector<double> target_to_patch;
+  for (int v = 0; v < target.n_vertices(); ++v) {
+    const SurfacePoint nearest = locator.find_nearest(target.points.col(v));
+    if (!signer.is_on_border(nearest, border)) target_to_patch.push_back(nearest.distance);
+  }
+  result.target_to_patch_statistics = compute_distance_statistics(target_to_patch);
+  return result;
+}
+
+}  // namespace lipofill::geometry

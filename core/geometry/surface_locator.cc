@@ -1,0 +1,80 @@
+#include "core/geometry/surface_locator.h"
+
+#include <vtkCellArray.h>
+#include <vtkGenericCell.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkStaticCellLocator.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace lipofill::geometry {
+
+struct SurfaceLocator::Impl {
+  vtkNew<vtkPolyData> surface;
+  vtkNew<vtkStaticCellLocator> locator;
+  vtkNew<vtkGenericCell> cell;
+};
+
+namespace {
+
+void fill(vtkPolyData* surface, const SurfaceMesh& mesh) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(mesh.n_vertices());
+  for (int v = 0; v < mesh.n_vertices(); ++v) points->SetPoint(v, mesh.points.col(v).data());
+  vtkNew<vtkCellArray> cells;
+  cells->AllocateExact(mesh.n_triangles(), 3 * static_cast<vtkIdType>(mesh.n_triangles()));
+  for (const auto& triangle : mesh.triangles) {
+    const vtkIdType corners[3] = {triangle[0], triangle[1], triangle[2]};
+    cells->InsertNextCell(3, corners);
+  }
+  surface->SetPoints(points);
+  surface->SetPolys(cells);
+}
+
+}  // namespace
+
+SurfaceLocator::SurfaceLocator(const SurfaceMesh& mesh) : impl_(std::make_unique<Impl>()) {
+  fill(impl_->surface, mesh);
+  impl_->locator->SetDataSet(impl_->surface);
+  impl_->locator->BuildLocator();
+}
+
+SurfaceLocator::~SurfaceLocator() = default;
+
+SurfacePoint SurfaceLocator::find_nearest(const Eigen::Vector3d& point) const {
+  SurfacePoint nearest;
+  vtkIdType cell_id = -1;
+  int sub_id = 0;
+  double squared_distance = 0.0;
+  impl_->locator->FindClosestPoint(point.data(), nearest.position.data(), impl_->cell, cell_id, sub_id, squared_distance);
+  nearest.triangle = static_cast<int>(cell_id);
+  nearest.distance = std::sqrt(squared_distance);
+  return nearest;
+}
+
+bool SurfaceLocator::is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
+  double t = 0.0;
+  double hit[3];
+  double parametric[3];
+  int sub_id = 0;
+  vtkIdType cell_id = -1;
+  return impl_->locator->IntersectWithLine(from.data(), to.data(), 0.0, t, hit, parametric, sub_id, cell_id, impl_->cell) !=
+         0;
+}
+
+Eigen::Vector3d compute_barycentric(const SurfaceMesh& mesh, int triangle, const Eigen::Vector3d& position) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const Eigen::Vector3d e1 = mesh.points.col(b) - mesh.points.col(a);
+  const Eigen::Vector3d e2 = mesh.points.col(c) - mesh.points.col(a);
+  const Eigen::Vector3d n = e1.cross(e2);
+  const Eigen::Vector3d p = position - mesh.points.col(a);
+  const double u = p.cross(e2).dot(n) / n.squaredNorm();
+  const double v = e1.cross(p).dot(n) / n.squaredNorm();
+  return {1.0 - u - v, u, v};
+}
+
+}  // namespace lipofill::geometry

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+
+#include "core/geometry/surface_mesh.h"
+
+namespace lipofill::geometry {
+
+struct SurfacePoint {
+  int triangle = -1;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  double distance = 0.0;                               ///< from the point asked about [m]
+};
+
+/// Nearest points and rays on a surface, through VTK. The surface must have a triangle.
+class SurfaceLocator {
+ public:
+  explicit SurfaceLocator(const SurfaceMesh& mesh);
+  ~SurfaceLocator();
+  SurfaceLocator(const SurfaceLocator&) = delete;
+  SurfaceLocator& operator=(const SurfaceLocator&) = delete;
+
+  SurfacePoint find_nearest(const Eigen::Vector3d& point) const;
+
+  /// Whether the straight line from one point to the other meets the surface.
+  bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Barycentric coordinates of a point in the plane of a triangle.
+Eigen::Vector3d compute_barycentric(const SurfaceMesh& mesh, int triangle, const Eigen::Vector3d& position);
+
+}  // namespace lipofill::geometry

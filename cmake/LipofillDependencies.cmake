@@ -31,4 +31,4 @@ find_library(OPENBLAS_SERIAL_LIBRARY openblas PATHS
   /usr/lib/aarch64-linux-gnu/openblas-serial NO_DEFAULT_PATH REQUIRED)
 add_library(lipofill_cholmod INTERFACE)
 target_include_directories(lipofill_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
-target_link_libraries(lipofill_cholmod INTERFACE ${CHOLMOD_LIBRARY} ${OPENBLAS_SERIAL_LIBRARY})
+target_link_libraries(lipofill_cholmod INTERFACE ${CHOLMOD_LIBRARY} ${OPENBLAS_SERIAL_LIBRARY} gomp)

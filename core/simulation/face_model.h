@@ -44,8 +44,8 @@ struct FaceModel {
   std::string content_hash;  ///< SHA-256 of everything a simulation depends on
 };
 
-/// INVALID_ARGUMENT with field violations named as in lipofill.v1.ModelSpec, FAILED_PRECONDITION from the scan, CANCELLED.
-/// Deterministic: the same specification gives the same content hash.
+/// INVALID_ARGUMENT with field violations named as in lipofill.v1.ModelSpec, FAILED_PRECONDITION from the scan,
+/// CANCELLED. Deterministic: the same specification gives the same content hash.
 absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceModelSpec& spec,
                                                                   const geometry::Progress& progress);
 

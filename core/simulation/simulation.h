@@ -27,23 +27,23 @@ struct ZoneReport {
 /// Figures of the state after a step.
 struct StepReport {
   uint64_t step = 0;
-  double time = 0.0;             ///< [s]
-  double step_size = 0.0;        ///< [s]
-  double injected = 0.0;         ///< [m3]
-  double film_volume = 0.0;      ///< [m3]
-  double gap_volume = 0.0;       ///< [m3]
-  double initial_volume = 0.0;   ///< [m3]  pre-wetted content at the start
+  double time = 0.0;            ///< [s]
+  double step_size = 0.0;       ///< [s]
+  double injected = 0.0;        ///< [m3]
+  double film_volume = 0.0;     ///< [m3]
+  double gap_volume = 0.0;      ///< [m3]
+  double initial_volume = 0.0;  ///< [m3]  pre-wetted content at the start
   double film_volume_relative_error = 0.0;
   double gap_volume_relative_error = 0.0;
-  double max_pressure = 0.0;     ///< [Pa]
-  double min_pressure = 0.0;     ///< [Pa]
-  double mean_pressure = 0.0;    ///< [Pa]  weighted by cell area
-  double max_thickness = 0.0;    ///< [m]
+  double max_pressure = 0.0;           ///< [Pa]
+  double min_pressure = 0.0;           ///< [Pa]
+  double mean_pressure = 0.0;          ///< [Pa]  weighted by cell area
+  double max_thickness = 0.0;          ///< [m]
   double skin_max_displacement = 0.0;  ///< [m]
-  double skin_speed = 0.0;       ///< [m/s]  largest over the nodes of the skin
+  double skin_speed = 0.0;             ///< [m/s]  largest over the nodes of the skin
   double skin_volume_change = 0.0;     ///< [m3]  swept by the skin
   double min_scaled_jacobian = 1.0;    ///< of the deformed tissue
-  int film_iterations = 0;       ///< Picard iterations in this step
+  int film_iterations = 0;             ///< Picard iterations in this step
   int newton_iterations = 0;
   std::vector<double> probe_thickness;  ///< [m]
   std::vector<double> probe_pressure;   ///< [Pa]
@@ -51,9 +51,9 @@ struct StepReport {
 
 /// A mesh whose points move: what viewers draw. `kind` 3: triangles, 4: quadrilaterals, 8: hexahedra.
 struct MeshTopology {
-  std::string name;                    ///< "skin", "scan", "film/<name>", "tissue"
-  std::vector<float> points_mm;        ///< (n_points, 3) at rest
-  std::vector<uint32_t> cells;         ///< (n_cells, kind)
+  std::string name;              ///< "skin", "scan", "film/<name>", "tissue"
+  std::vector<float> points_mm;  ///< (n_points, 3) at rest
+  std::vector<uint32_t> cells;   ///< (n_cells, kind)
   int kind = 3;
   int n_points() const { return static_cast<int>(points_mm.size() / 3); }
   int n_cells() const { return static_cast<int>(cells.size()) / kind; }
@@ -77,11 +77,12 @@ struct FrameField {
 class Simulation {
  public:
   /// INVALID_ARGUMENT with field violations named as in lipofill.v1.SimulationSpec, values in the units of those names.
-  static absl::StatusOr<std::unique_ptr<Simulation>> create(std::shared_ptr<const FaceModel> model, SimulationSpec spec);
+  static absl::StatusOr<std::unique_ptr<Simulation>> create(std::shared_ptr<const FaceModel> model,
+                                                            SimulationSpec spec);
   ~Simulation();
 
-  /// One time step. Never throws. On failure phase() is kFailed with reason(), and the state stays that before the step.
-  /// Does nothing unless phase() is kRunning.
+  /// One time step. Never throws. On failure phase() is kFailed with reason(), and the state stays that before the
+  /// step. Does nothing unless phase() is kRunning.
   void advance_step();
 
   Phase phase() const;
@@ -89,8 +90,8 @@ class Simulation {
   const StepReport& report() const;
   std::vector<ZoneReport> zone_reports() const;
 
-  /// Adds an injection to the plan; without a start it begins now, or after the last one still due. Field violations named as in
-  /// lipofill.v1.Injection. A settled or finished simulation does not take one: FAILED_PRECONDITION.
+  /// Adds an injection to the plan; without a start it begins now, or after the last one still due. Field violations
+  /// named as in lipofill.v1.Injection. A settled or finished simulation does not take one: FAILED_PRECONDITION.
   absl::Status inject(const InjectionSpec& injection);
   const SimulationSpec& spec() const;
   const FaceModel& model() const;
@@ -103,10 +104,9 @@ class Simulation {
   std::vector<MeshTopology> topology() const;
 
   /// Fields of the present state on the named meshes (all when empty):
-  ///   skin:   displacement [mm] (3), pressure [Pa] (of the film below, 0 where there is none), thickness [mm] (of that film)
-  ///   scan:   displacement [mm] (3), pressure [Pa]
-  ///   film/x: displacement [mm] (3) at points; thickness [mm], pressure [Pa], velocity [mm/s] (3), wet (0 or 1) on cells
-  ///   tissue: displacement [mm] (3) at points
+  ///   skin:   displacement [mm] (3), pressure [Pa] (of the film below, 0 where there is none), thickness [mm] (of that
+  ///   film) scan:   displacement [mm] (3), pressure [Pa] film/x: displacement [mm] (3) at points; thickness [mm],
+  ///   pressure [Pa], velocity [mm/s] (3), wet (0 or 1) on cells tissue: displacement [mm] (3) at points
   std::vector<FrameField> frame(const std::vector<std::string>& meshes) const;
 
   /// SHA-256 of the state: positions, velocities, volumes, pressures, time; equal for equal runs, byte for byte.

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/geometry/chart_box.h"
 #include "core/geometry/face_geometry.h"
 
 namespace lipofill::simulation {
@@ -14,17 +15,11 @@ enum class CouplingMode { kExact, kLumped };
 enum class WallFriction { kNoSlip, kNone };
 enum class FilmWallKind { kTissue, kRigid, kWinkler };
 
-/// A rectangle of the chart.
-struct ChartBox {
-  double xi_min = 0.0;
-  double xi_max = 1.0;
-  double eta_min = 0.0;
-  double eta_max = 1.0;
-};
+using geometry::ChartBox;
 
 struct Disc {
   geometry::SkinPoint centre;
-  double radius = 0.0;  ///< [m] along the skin
+  double radius = 0.0;  ///< [m] straight distance from the centre
 };
 
 struct NamedRegion {
@@ -44,7 +39,7 @@ struct FilmSpec {
   int n_eta = 0;
   std::vector<ZoneSpec> zones;
   geometry::ScalarField rest_thickness = geometry::ScalarField::constant(0.05e-3);  ///< [m]
-  std::optional<geometry::ScalarField> initial_thickness;                            ///< [m]
+  std::optional<geometry::ScalarField> initial_thickness;                           ///< [m]
   WallFriction wall_friction = WallFriction::kNoSlip;
   FilmWallKind wall = FilmWallKind::kTissue;
   double wall_stiffness = 0.0;  ///< [Pa/m], kWinkler only
@@ -76,8 +71,8 @@ struct SimulationSpec {
   double settle_skin_speed = 0.02e-3;  ///< [m/s], 0: never
   CouplingMode coupling = CouplingMode::kExact;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s2]
-  double damping_mass = 0.0;                           ///< alpha [1/s]
-  double damping_stiffness = 0.0;                      ///< beta [s]
+  double damping_mass = 0.0;                          ///< alpha [1/s]
+  double damping_stiffness = 0.0;                     ///< beta [s]
   std::vector<ProbeSpec> probes;
 };
 

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/geometry/face_geometry.h"
+
+namespace lipofill::anatomy {
+
+/// A named part of the face where fat is injected: an ellipse on the skin, placed by landmarks.
+struct Region {
+  geometry::LandmarkPoint centre;
+  std::string axis_from;     ///< the long axis points from this landmark
+  std::string axis_to;       ///< to this one
+  double half_length = 0.0;  ///< [m]
+  double half_width = 0.0;   ///< [m]
+};
+
+/// Names that find_region knows, without their side: "masseter", ...
+std::vector<std::string> region_names();
+
+/// A region by name and side, for example "masseter_left". Sizes are those of an adult (assumed; see clinical notes in
+/// core/doc/regions.md). INVALID_ARGUMENT listing the known names.
+absl::StatusOr<Region> find_region(std::string_view name);
+
+/// A region brought to a face: centre and axes in the scan's frame.
+struct PlacedRegion {
+  Eigen::Vector3d centre;    ///< on the skin [m]
+  Eigen::Vector3d along;     ///< unit
+  double half_length = 0.0;  ///< [m]
+  double half_width = 0.0;   ///< [m]
+  bool contains(const Eigen::Vector3d& point) const;
+};
+
+/// INVALID_ARGUMENT when a landmark is missing or the centre lies outside the charted region.
+absl::StatusOr<PlacedRegion> place_region(const geometry::FaceGeometry& face, std::string_view name);
+
+}  // namespace lipofill::anatomy

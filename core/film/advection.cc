@@ -1,0 +1,136 @@
+#include "core/film/advection.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace lipofill::film {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Tangent vectors of the mid-surface at a point, in index coordinates.
+struct Basis {
+  Vector3d g1;
+  Vector3d g2;
+  double sqrt_g;
+};
+
+/// Velocity anywhere in the chart, in index coordinates: x = i + fraction, y = j + fraction.
+class VelocityField {
+ public:
+  VelocityField(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& velocity)
+      : grid_(grid),
+        metric_(metric),
+        flux_xi_((grid.n_xi + 1) * grid.n_eta, 0.0),
+        flux_eta_(grid.n_xi * (grid.n_eta + 1), 0.0) {
+    for (int e = 0; e < grid.n_edges(); ++e) {
+      const int slot = grid.slot_of_cell[grid.edges[e].right];
+      const int i = grid.slot_i(slot);
+      const int j = grid.slot_j(slot);
+      if (grid.edges[e].direction == 0) {
+        flux_xi_[j * (grid.n_xi + 1) + i] = velocity[e];
+      } else {
+        flux_eta_[j * grid.n_xi + i] = velocity[e];
+      }
+    }
+  }
+
+  Basis basis(const Vector2d& at) const {
+    const auto [i, s] = split(at.x(), grid_.n_xi);
+    const auto [j, t] = split(at.y(), grid_.n_eta);
+    const auto x = [&](int di, int dj) { return metric_.vertices.col(grid_.vertex(i + di, j + dj)); };
+    Basis b;
+    b.g1 = (1.0 - t) * (x(1, 0) - x(0, 0)) + t * (x(1, 1) - x(0, 1));
+    b.g2 = (1.0 - s) * (x(0, 1) - x(0, 0)) + s * (x(1, 1) - x(1, 0));
+    b.sqrt_g = b.g1.cross(b.g2).norm();
+    return b;
+  }
+
+  /// sqrt(g) u^a, the flux density through lines of constant xi and eta.
+  Vector2d flux(const Vector2d& at) const {
+    return {sample(flux_xi_, grid_.n_xi + 1, grid_.n_eta, at.x(), at.y() - 0.5),
+            sample(flux_eta_, grid_.n_xi, grid_.n_eta + 1, at.x() - 0.5, at.y())};
+  }
+
+  Vector2d index_velocity(const Vector2d& at) const { return flux(at) / basis(at).sqrt_g; }
+
+  Vector3d vector(const Vector2d& at) const {
+    const Basis b = basis(at);
+    const Vector2d f = flux(at);
+    return (f.x() * b.g1 + f.y() * b.g2) / b.sqrt_g;
+  }
+
+  int zone(const Vector2d& at) const {
+    const int i = split(at.x(), grid_.n_xi).first;
+    const int j = split(at.y(), grid_.n_eta).first;
+    const int cell = grid_.cell_of_slot[j * grid_.n_xi + i];
+    return cell < 0 ? -1 : grid_.zone_of_cell[cell];
+  }
+
+ private:
+  static std::pair<int, double> split(double value, int n) {
+    const double inside = std::clamp(value, 0.0, static_cast<double>(n));
+    const int index = std::min(static_cast<int>(inside), n - 1);
+    return {index, inside - index};
+  }
+
+  /// Bilinear between samples at integer places, constant beyond the outermost.
+  static double sample(const std::vector<double>& values, int n_x, int n_y, double x, double y) {
+    const auto [i, s] = n_x > 1 ? split(x, n_x - 1) : std::pair(0, 0.0);
+    const auto [j, t] = n_y > 1 ? split(y, n_y - 1) : std::pair(0, 0.0);
+    const int right = std::min(i + 1, n_x - 1);
+    const int above = std::min(j + 1, n_y - 1);
+    return (1.0 - t) * ((1.0 - s) * values[j * n_x + i] + s * values[j * n_x + right]) +
+           t * ((1.0 - s) * values[above * n_x + i] + s * values[above * n_x + right]);
+  }
+
+  const FilmGrid& grid_;
+  const FilmMetric& metric_;
+  std::vector<double> flux_xi_;   ///< on lines of constant xi, (n_xi + 1, n_eta); 0 on sealed edges
+  std::vector<double> flux_eta_;  ///< on lines of constant eta, (n_xi, n_eta + 1)
+};
+
+Vector2d edge_place(const FilmGrid& grid, const Edge& edge) {
+  const int slot = grid.slot_of_cell[edge.right];
+  const double i = grid.slot_i(slot);
+  const double j = grid.slot_j(slot);
+  return edge.direction == 0 ? Vector2d(i, j + 0.5) : Vector2d(i + 0.5, j);
+}
+
+/// Pulls the foot of a path that left the zone back along the path.
+Vector2d stay_in_zone(const VelocityField& field, const Vector2d& start, Vector2d foot, int zone) {
+  constexpr int kHalvings = 20;
+  for (int k = 0; k < kHalvings && field.zone(foot) != zone; ++k) foot = 0.5 * (start + foot);
+  return field.zone(foot) == zone ? foot : start;
+}
+
+}  // namespace
+
+Eigen::VectorXd advect_velocity(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& velocity,
+                                double dt) {
+  const VelocityField field(grid, metric, velocity);
+  Eigen::VectorXd next(grid.n_edges());
+  for (int e = 0; e < grid.n_edges(); ++e) {
+    const Edge& edge = grid.edges[e];
+    const int zone = grid.zone_of_cell[edge.left];
+    const Vector2d start = edge_place(grid, edge);
+    const Vector2d middle = stay_in_zone(field, start, start - 0.5 * dt * field.index_velocity(start), zone);
+    const Vector2d foot = stay_in_zone(field, start, start - dt * field.index_velocity(middle), zone);
+    const Vector3d carried = field.vector(foot);
+    const Basis b = field.basis(start);
+    const double g11 = b.g1.squaredNorm();
+    const double g12 = b.g1.dot(b.g2);
+    const double g22 = b.g2.squaredNorm();
+    const double v1 = carried.dot(b.g1);
+    const double v2 = carried.dot(b.g2);
+    // sqrt(g) u^a = sqrt(g) g^ab v_b
+    next[e] = (edge.direction == 0 ? g22 * v1 - g12 * v2 : g11 * v2 - g12 * v1) / b.sqrt_g;
+  }
+  return next;
+}
+
+}  // namespace lipofill::film

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/film/film_grid.h"
+#include "core/film/film_metric.h"
+
+namespace lipofill::film {
+
+/// Semi-Lagrangian advection of the film's velocity along the curved mid-surface, u'(x) = u(foot of the path that ends
+/// at x).
+///
+/// Paths are traced in the chart by the midpoint rule and stop at walls. The velocity is carried as a vector of space
+/// and made tangential where it arrives, which is parallel transport to second order. Unconditionally stable, first
+/// order in time.
+/// @param velocity  U, normal velocity times edge length [m2/s] (n_edges)
+/// Checked by tests/unit/film/advection_test.cc.
+Eigen::VectorXd advect_velocity(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& velocity,
+                                double dt);
+
+}  // namespace lipofill::film

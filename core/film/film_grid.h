@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/geometry/chart_box.h"
+
+namespace lipofill::film {
+
+/// Sides of a cell, and at the same time the order of `FilmGrid::edge_of_side`.
+enum Side { kLowXi = 0, kHighXi = 1, kLowEta = 2, kHighEta = 3 };
+
+/// An open edge between two cells; fat flows through it. Its positive direction is from `left` to `right`, along +xi or
+/// +eta.
+struct Edge {
+  int left = 0;
+  int right = 0;
+  int direction = 0;  ///< 0: the edge is crossed along xi, 1: along eta
+};
+
+/// Topology of the staggered film grid: n_xi x n_eta slots over a box of the chart, of which those in a zone are cells.
+/// Pressure and volume live on cells, velocity on the open edges. Edges between two zones, or between a cell and no
+/// cell, are sealed walls and are not in the list.
+struct FilmGrid {
+  geometry::ChartBox extent;
+  int n_xi = 0;
+  int n_eta = 0;
+  std::vector<int> cell_of_slot;  ///< (n_xi * n_eta), xi fastest; -1: no cell
+  std::vector<int> slot_of_cell;
+  std::vector<int> zone_of_cell;
+  std::vector<Edge> edges;                       ///< ascending in slot of the left cell, xi before eta
+  std::vector<std::array<int, 4>> edge_of_side;  ///< a cell's edges by Side; -1: sealed
+
+  int n_cells() const { return static_cast<int>(slot_of_cell.size()); }
+  int n_edges() const { return static_cast<int>(edges.size()); }
+  int n_vertices() const { return (n_xi + 1) * (n_eta + 1); }
+  int vertex(int i, int j) const { return j * (n_xi + 1) + i; }
+  int slot_i(int slot) const { return slot % n_xi; }
+  int slot_j(int slot) const { return slot / n_xi; }
+  /// The cell beyond a side, -1 when the side is sealed.
+  int neighbour(int cell, Side side) const;
+  double vertex_xi(int i) const { return extent.xi_min + (extent.xi_max - extent.xi_min) * i / n_xi; }
+  double vertex_eta(int j) const { return extent.eta_min + (extent.eta_max - extent.eta_min) * j / n_eta; }
+};
+
+/// Numbers cells and edges. `zone_of_slot`: (n_xi * n_eta), -1 where there is no film.
+/// Checked by tests/unit/film/film_grid_test.cc.
+FilmGrid make_film_grid(const geometry::ChartBox& extent, int n_xi, int n_eta, const std::vector<int>& zone_of_slot);
+
+}  // namespace lipofill::film

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+
+#include "core/film/film_grid.h"
+#include "core/film/film_metric.h"
+#include "core/film/rheology.h"
+
+namespace lipofill::film {
+
+/// Implicit viscosity of the film: in-plane diffusion and friction on both walls,
+///
+///     h (u' - u)/dt = nu [grad(h div u') - curl(h curl u')] - h (12 nu/h^2) u'
+///
+/// as the symmetric positive definite system on edge velocities U [m2/s]
+///
+///     [M(h (1 + 12 nu dt/h^2)) + dt nu (D^T (h/a) D + M(1) K^T (h/a_v) K M(1))] U' = M(h) U
+///
+/// with D the net outflow of cells, K the circulation around vertices and M the kinetic metric of edge_operators.h.
+/// Sealed edges are free-slip side walls. First order in time, second in space on smooth charts. Checked by
+/// tests/verification/film/taylor_green_test.cc and tests/unit/film/viscosity_test.cc.
+class ImplicitViscosity {
+ public:
+  explicit ImplicitViscosity(const FilmGrid& grid);
+
+  /// @param cell_thickness  h [m] (n_cells)
+  /// @param edge_thickness  h [m] (n_edges); a dry edge ends with no velocity
+  /// Returns U'. Unconditionally stable.
+  Eigen::VectorXd advance(const FilmGrid& grid, const FilmMetric& metric, const Fat& fat,
+                          const Eigen::VectorXd& cell_thickness, const Eigen::VectorXd& edge_thickness,
+                          const Eigen::VectorXd& velocity, double dt);
+
+ private:
+  Eigen::SparseMatrix<double> outflow_;      ///< D (n_cells, n_edges)
+  Eigen::SparseMatrix<double> circulation_;  ///< K (n_vertices, n_edges), rows of vertices with four open edges only
+};
+
+}  // namespace lipofill::film

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/coupling/coupled_factor.h"
+#include "core/coupling/film_solve.h"
+#include "core/coupling/gap_system.h"
+#include "core/film/film_metric.h"
+#include "core/film/film_projection.h"
+#include "core/film/viscosity.h"
+#include "core/simulation/film_layout.h"
+#include "core/simulation/simulation_spec.h"
+#include "core/simulation/simulation_state.h"
+#include "core/simulation/tissue_setup.h"
+
+namespace lipofill::simulation {
+
+/// What came of trying a step.
+struct StepOutcome {
+  bool accepted = false;
+  std::string reason;  ///< why not
+  SimulationState state;
+  Eigen::VectorXd gap;               ///< rest + g at the new positions [m3] (cells of all films)
+  double min_scaled_jacobian = 1.0;  ///< of the tissue at the new positions
+  int film_iterations = 0;
+  int newton_iterations = 0;
+};
+
+/// One implicit Euler step of tissue and films together.
+///
+///     S dx - B^T p = f                 tissue: S = M/dt^2 + D/dt + K at the positions x
+///     B dx + dt J p = d                films:  d = V + injected - outflow at zero pressure - rest - g(x)
+///
+/// repeated from the new positions (Newton) until the gap holds the film's volume to kGapTolerance: B changes with x,
+/// so that large steps need more than one. What mismatch is left enters the next step's d: it cannot accumulate.
+class CoupledStep {
+ public:
+  static absl::StatusOr<std::unique_ptr<CoupledStep>> create(const FaceModel& model,
+                                                             const std::vector<FilmLayout>& films,
+                                                             const SimulationSpec& spec);
+
+  /// Everything at rest; films at rest thickness.
+  SimulationState rest_state() const;
+
+  /// Opens the tissue for the films' initial thickness: equilibrium with every cell holding its volume, found by load
+  /// stepping. INVALID_ARGUMENT with the field "films" when the tissue does not come to rest.
+  absl::Status open_to_initial_thickness(SimulationState& state);
+
+  /// @param injected  volume into each cell of each film [m3]
+  StepOutcome try_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt);
+
+  /// Rest + g for a state [m3] (cells of all films).
+  Eigen::VectorXd compute_gap(const SimulationState& state);
+
+  double compute_min_scaled_jacobian(const SimulationState& state) const;
+
+  int n_dofs() const { return tissue_ ? tissue_->tissue.n_dofs() : 0; }
+  const TissueSetup* tissue() const { return tissue_.get(); }
+  /// Mid-surface metric of a film for a state.
+  film::FilmMetric film_metric(const SimulationState& state, int film) const;
+  /// Cell areas at rest, of a film [m2].
+  const Eigen::VectorXd& rest_area(int film) const { return rest_area_[film]; }
+  double shift() const { return factor_ ? factor_->shift() : 0.0; }
+  void set_shift(double shift) {
+    if (factor_) factor_->set_shift(shift);
+  }
+
+ private:
+  CoupledStep(const FaceModel& model, const std::vector<FilmLayout>& films, const SimulationSpec& spec);
+  absl::Status set_up();
+  absl::Status check_every_cell_can_open();
+  bool open_to(const Eigen::VectorXd& target, double tolerance, SimulationState& state, Eigen::VectorXd& pressure);
+
+  /// The tissue's side of a Newton iteration: assembles at x and factors. False: not positive definite.
+  bool linearise_tissue(const Eigen::Matrix3Xd& x, double dt);
+  Eigen::VectorXd compute_residual_force(const SimulationState& from, const Eigen::Matrix3Xd& x, double dt) const;
+  void begin_film_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt);
+  coupling::WallCompliance wall_compliance();
+  Eigen::VectorXd gather_tissue_part(const Eigen::VectorXd& all_cells) const;
+  void add_displacement(const Eigen::VectorXd& dx, Eigen::Matrix3Xd& x) const;
+  Eigen::VectorXd gap_of_walls(const Eigen::VectorXd& pressure) const;
+  double gap_error(const Eigen::VectorXd& gap, const Eigen::VectorXd& volume) const;
+  bool solve_tissue_and_films(const SimulationState& from, double dt, StepOutcome& outcome,
+                              coupling::FilmSolveResult& solution);
+  void finish(const SimulationState& from, double dt, const coupling::FilmSolveResult& solution, StepOutcome& outcome);
+
+  const FaceModel& model_;
+  const std::vector<FilmLayout>& films_;
+  CouplingMode coupling_;
+  Eigen::Vector3d gravity_;
+  double fat_density_;
+  double fat_viscosity_;
+  std::unique_ptr<TissueSetup> tissue_;
+  std::unique_ptr<coupling::GapSystem> gaps_;
+  std::unique_ptr<coupling::CoupledFactor> factor_;
+  std::vector<int> gap_of_film_;     ///< index in gaps_, -1: a wall of its own
+  std::vector<int> cell_offset_;     ///< first cell of each film among all, and one past the last
+  std::vector<int> cell_of_tissue_;  ///< among all cells, of each row of gaps_
+  Eigen::VectorXd rest_volume_;      ///< V of the films at rest [m3] (all cells)
+  std::vector<Eigen::VectorXd> rest_area_;
+  std::vector<film::FilmMetric> rest_metric_;
+  std::vector<std::unique_ptr<film::FilmProjection>> projections_;
+  std::vector<film::ImplicitViscosity> viscosity_;
+  std::vector<film::FilmMetric> metric_;  ///< of the step under way
+  Eigen::MatrixXd full_compliance_;       ///< of all cells, when films with other walls stand beside those on tissue
+};
+
+}  // namespace lipofill::simulation

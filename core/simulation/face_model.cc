@@ -1,0 +1,115 @@
+#include "core/simulation/face_model.h"
+
+#include <set>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/field_violations.h"
+#include "core/base/hash.h"
+
+namespace lipofill::simulation {
+namespace {
+
+constexpr double kPascalPerKilopascal = 1e3;
+/// Pa/m in a kPa/mm.
+constexpr double kStiffnessUnit = 1e6;
+
+void check_layer(const TissueLayerSpec& layer, const std::string& field, FieldViolations& violations) {
+  violations.check_range(absl::StrCat(field, ".youngs_modulus_kpa"),
+                         layer.material.youngs_modulus / kPascalPerKilopascal, 0.01, 1e6, "kPa");
+  violations.check_half_open(absl::StrCat(field, ".poisson_ratio"), layer.material.poisson_ratio, 0.0, 0.5, "");
+  violations.check_range(absl::StrCat(field, ".density_kg_m3"), layer.material.density, 1.0, 30000.0, "kg/m3");
+}
+
+void check_support(const Support& support, const char* field, bool is_square, FieldViolations& violations) {
+  if (support.kind == SupportKind::kElastic) {
+    violations.check_range(absl::StrCat(field, ".stiffness_kpa_per_mm"), support.stiffness / kStiffnessUnit, 1e-9, 1e9,
+                           "kPa/mm");
+  }
+  if (support.kind == SupportKind::kRollers && !is_square) {
+    violations.add(absl::StrCat(field, ".kind"), "is ROLLERS, which needs a square: a scan's sides are not planes");
+  }
+}
+
+absl::Status check_model(const FaceModelSpec& spec, bool is_square) {
+  FieldViolations violations;
+  if (spec.layers.empty() && !is_square) violations.add("layers", "are none, a scan needs at least 1");
+  std::set<std::string> names;
+  for (size_t l = 0; l < spec.layers.size(); ++l) {
+    const std::string field = absl::StrCat("layers[", l, "]");
+    const std::string& name = spec.layers[l].name;
+    if (name.empty()) violations.add(field + ".name", "is empty");
+    if (!names.insert(name).second) violations.add(field + ".name", absl::StrCat("is '", name, "' a second time"));
+    check_layer(spec.layers[l], field, violations);
+  }
+  check_support(spec.rim, "rim", is_square, violations);
+  check_support(spec.base, "base", is_square, violations);
+  return violations.to_status();
+}
+
+void add_matrix(Hasher& hasher, const Eigen::Matrix3Xd& matrix) {
+  hasher.add(static_cast<uint64_t>(matrix.cols()));
+  hasher.add_bytes(matrix.data(), static_cast<size_t>(matrix.size()) * sizeof(double));
+}
+
+std::string compute_content_hash(const FaceModel& model) {
+  Hasher hasher;
+  hasher.add("lipofill face model 1");
+  const geometry::LayeredGrid& grid = model.geometry.grid;
+  for (const int n : {grid.n_xi, grid.n_eta}) hasher.add(n);
+  hasher.add(grid.elements_through);
+  add_matrix(hasher, grid.nodes);
+  add_matrix(hasher, model.geometry.scan.points);
+  for (const auto& triangle : model.geometry.scan.triangles) hasher.add_bytes(triangle.data(), sizeof triangle);
+  for (const geometry::Rider& rider : model.geometry.riders) {
+    hasher.add(rider.vertex);
+    hasher.add(rider.place.xi);
+    hasher.add(rider.place.eta);
+  }
+  for (const auto& [name, position] : model.geometry.landmarks) {
+    hasher.add(name);
+    hasher.add_bytes(position.data(), 3 * sizeof(double));
+  }
+  for (const Eigen::Vector3d* axis :
+       {&model.geometry.axes.left, &model.geometry.axes.up, &model.geometry.axes.forward}) {
+    hasher.add_bytes(axis->data(), 3 * sizeof(double));
+  }
+  for (const TissueLayerSpec& layer : model.layers) {
+    hasher.add(layer.name);
+    hasher.add(layer.material.youngs_modulus);
+    hasher.add(layer.material.poisson_ratio);
+    hasher.add(layer.material.density);
+  }
+  for (const Support& support : {model.rim, model.base}) {
+    hasher.add(static_cast<int>(support.kind));
+    hasher.add(support.stiffness);
+  }
+  hasher.add(model.is_square);
+  return hasher.hex_digest();
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceModelSpec& spec,
+                                                                  const geometry::Progress& progress) {
+  auto model = std::make_shared<FaceModel>();
+  model->is_square = std::holds_alternative<geometry::SquareSpec>(spec.region);
+  if (const absl::Status status = check_model(spec, model->is_square); !status.ok()) return status;
+
+  geometry::FaceGeometrySpec geometry_spec;
+  geometry_spec.region = spec.region;
+  geometry_spec.n_xi = spec.n_xi;
+  geometry_spec.n_eta = spec.n_eta;
+  for (const TissueLayerSpec& layer : spec.layers) geometry_spec.layers.push_back(layer.geometry);
+  auto built = geometry::build_face_geometry(geometry_spec, progress);
+  if (!built.ok()) return built.status();
+
+  model->geometry = *std::move(built);
+  model->layers = spec.layers;
+  model->rim = spec.rim;
+  model->base = spec.base;
+  model->content_hash = compute_content_hash(*model);
+  return std::shared_ptr<const FaceModel>(std::move(model));
+}
+
+}  // namespace lipofill::simulation

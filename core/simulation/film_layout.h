@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/film/film_grid.h"
+#include "core/film/rheology.h"
+#include "core/simulation/face_model.h"
+#include "core/simulation/simulation_spec.h"
+
+namespace lipofill::simulation {
+
+/// A film of the plan, placed on a model.
+struct FilmLayout {
+  std::string name;
+  film::FilmGrid grid;
+  std::vector<std::string> zone_names;  ///< by index in FilmGrid::zone_of_cell
+  FilmWallKind wall = FilmWallKind::kTissue;
+  double wall_stiffness = 0.0;  ///< [Pa/m]
+  bool wall_friction = true;
+  int level = -1;  ///< of the tissue, kTissue only
+  geometry::ScalarField rest_thickness;
+  geometry::ScalarField initial_thickness;
+
+  int cell_at(const geometry::ChartPoint& place) const;
+  geometry::ChartPoint cell_centre(int cell) const;
+};
+
+/// Decides which cells belong to which zone and where in the tissue the film lies. Field violations are named below
+/// "films[index]", values in the units of lipofill.v1.Film.
+absl::StatusOr<FilmLayout> place_film(const FaceModel& model, const FilmSpec& spec);
+
+/// Flags of the level's nodes that are doubled: all quadrilaterals around the node lie in cells of one zone. The tissue
+/// stays bonded along the edges of zones.
+std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const film::FilmGrid& film);
+
+}  // namespace lipofill::simulation

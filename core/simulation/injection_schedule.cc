@@ -1,0 +1,120 @@
+#include "core/simulation/injection_schedule.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/field_violations.h"
+#include "core/film/film_metric.h"
+
+namespace lipofill::simulation {
+namespace {
+
+constexpr double kCubicMetrePerMillilitre = 1e-6;
+/// No tissue plane of the face takes more: mean thickness of the fat in a zone [m].
+constexpr double kMaxMeanThickness = 20e-3;
+
+/// Skin area over every cell of a film [m2].
+Eigen::VectorXd cell_areas(const FaceModel& model, const film::FilmGrid& grid) {
+  Eigen::Matrix3Xd vertices(3, grid.n_vertices());
+  for (int j = 0; j <= grid.n_eta; ++j) {
+    for (int i = 0; i <= grid.n_xi; ++i) {
+      vertices.col(grid.vertex(i, j)) =
+          geometry::skin_position(model.geometry.grid, {grid.vertex_xi(i), grid.vertex_eta(j)});
+    }
+  }
+  return film::compute_film_metric(grid, vertices).area;
+}
+
+/// Film and zone of a zone's name; film -1 when there is none of that name.
+std::pair<int, int> find_zone(const std::vector<FilmLayout>& films, const std::string& name) {
+  for (size_t f = 0; f < films.size(); ++f) {
+    const auto& names = films[f].zone_names;
+    const auto it = std::find(names.begin(), names.end(), name);
+    if (it != names.end()) return {static_cast<int>(f), static_cast<int>(it - names.begin())};
+  }
+  return {-1, -1};
+}
+
+}  // namespace
+
+absl::Status InjectionSchedule::add(const FaceModel& model, const std::vector<FilmLayout>& films,
+                                    const InjectionSpec& spec, double now) {
+  FieldViolations violations;
+  const auto [film, zone] = find_zone(films, spec.zone);
+  if (film < 0) violations.add("zone", absl::StrCat("is '", spec.zone, "', which no film has"));
+  violations.check_range("rate_ml_per_s", spec.rate / kCubicMetrePerMillilitre, 1e-6, 1000.0, "mL/s");
+  if (!std::isfinite(spec.volume)) violations.add("volume_ml", "is not a number");
+  if (spec.start.has_value()) violations.check_range("start_s", *spec.start, now, 1e6, "s");
+  if (!violations.empty()) return violations.to_status();
+
+  Injection injection;
+  injection.film = film;
+  const FilmLayout& layout = films[film];
+  const Eigen::VectorXd areas = cell_areas(model, layout.grid);
+  double zone_area = 0.0;
+  for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {
+    if (layout.grid.zone_of_cell[cell] == zone) zone_area += areas[cell];
+  }
+  const double most = zone_area * kMaxMeanThickness;
+  if (std::abs(spec.volume) > most) {
+    violations.add("volume_ml",
+                   absl::StrCat("is ", spec.volume / kCubicMetrePerMillilitre, " mL, zone '", spec.zone, "' of ",
+                                zone_area * 1e4, " cm2 holds at most ", most / kCubicMetrePerMillilitre, " mL"));
+  }
+  if (spec.site.has_value()) {
+    const auto place = geometry::locate_in_chart(model.geometry, *spec.site);
+    violations.absorb("site", place.status());
+    const int cell = place.ok() ? layout.cell_at(*place) : -1;
+    if (place.ok() && (cell < 0 || layout.grid.zone_of_cell[cell] != zone)) {
+      violations.add("site", absl::StrCat("lies at (", place->xi, ", ", place->eta, ") of the chart, outside zone '",
+                                          spec.zone, "'"));
+    }
+    injection.cells = {cell};
+    injection.shares = {1.0};
+  } else {
+    for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {
+      if (layout.grid.zone_of_cell[cell] != zone) continue;
+      injection.cells.push_back(cell);
+      injection.shares.push_back(areas[cell] / zone_area);
+    }
+  }
+  if (!violations.empty()) return violations.to_status();
+
+  injection.volume = spec.volume;
+  injection.rate = spec.rate;
+  injection.start = spec.start.value_or(std::max(now, end_));
+  end_ = std::max(end_, injection.start + std::abs(spec.volume) / spec.rate);
+  injections_.push_back(std::move(injection));
+  return absl::OkStatus();
+}
+
+std::vector<Eigen::VectorXd> InjectionSchedule::deliver(const std::vector<FilmLayout>& films, double time, double dt) {
+  std::vector<Eigen::VectorXd> received;
+  for (const FilmLayout& film : films) received.push_back(Eigen::VectorXd::Zero(film.grid.n_cells()));
+  for (Injection& injection : injections_) {
+    const double elapsed = std::max(0.0, time + dt - injection.start);
+    const double due = std::min(std::abs(injection.volume), injection.rate * elapsed);
+    const double amount = std::copysign(due, injection.volume) - injection.delivered;
+    if (amount == 0.0) continue;
+    for (size_t k = 0; k < injection.cells.size(); ++k) {
+      received[injection.film][injection.cells[k]] += injection.shares[k] * amount;
+    }
+    injection.delivered += amount;
+    delivered_ += amount;
+  }
+  return received;
+}
+
+std::vector<double> InjectionSchedule::delivered_each() const {
+  std::vector<double> each;
+  for (const Injection& injection : injections_) each.push_back(injection.delivered);
+  return each;
+}
+
+void InjectionSchedule::restore_delivered(const std::vector<double>& each, double total) {
+  for (size_t k = 0; k < injections_.size(); ++k) injections_[k].delivered = each[k];
+  delivered_ = total;
+}
+
+}  // namespace lipofill::simulation

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/simulation/face_model.h"
+#include "core/simulation/film_layout.h"
+#include "core/simulation/simulation_spec.h"
+
+namespace lipofill::simulation {
+
+/// Which cells are fed with how much when.
+class InjectionSchedule {
+ public:
+  /// Field violations are named as in lipofill.v1.Injection. Without a start it begins at `now` or when the last one
+  /// ends.
+  absl::Status add(const FaceModel& model, const std::vector<FilmLayout>& films, const InjectionSpec& spec, double now);
+
+  /// Volume that each cell of each film receives between `time` and `time + dt`, and notes it as delivered [m3].
+  std::vector<Eigen::VectorXd> deliver(const std::vector<FilmLayout>& films, double time, double dt);
+
+  /// Sum of all that has been delivered [m3].
+  double delivered() const { return delivered_; }
+  /// When the last injection ends [s].
+  double end() const { return end_; }
+
+  /// Mutable part, for snapshots: what each injection has delivered.
+  std::vector<double> delivered_each() const;
+  void restore_delivered(const std::vector<double>& each, double total);
+
+ private:
+  struct Injection {
+    int film = 0;
+    std::vector<int> cells;
+    std::vector<double> shares;  ///< sum 1
+    double volume = 0.0;         ///< [m3]
+    double rate = 0.0;           ///< [m3/s] > 0
+    double start = 0.0;          ///< [s]
+    double delivered = 0.0;      ///< [m3]
+  };
+  std::vector<Injection> injections_;
+  double delivered_ = 0.0;
+  double end_ = 0.0;
+};
+
+}  // namespace lipofill::simulation

@@ -1,0 +1,70 @@
+#include "core/simulation/plan_checks.h"
+
+#include <set>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/field_violations.h"
+
+namespace lipofill::simulation {
+namespace {
+
+constexpr size_t kMaxFilms = 8;
+constexpr size_t kMaxInjections = 1000;
+constexpr size_t kMaxProbes = 64;
+constexpr double kSecondsPerMillisecond = 1e-3;
+
+void check_count(const char* field, size_t count, size_t most, FieldViolations& violations) {
+  if (count > most) violations.add(field, absl::StrCat("are ", count, ", must be at most ", most));
+}
+
+template <typename Items>
+void check_names(const char* field, const Items& items, FieldViolations& violations) {
+  std::set<std::string> seen;
+  for (size_t k = 0; k < items.size(); ++k) {
+    const std::string at = absl::StrCat(field, "[", k, "].name");
+    if (items[k].name.empty()) violations.add(at, "is empty");
+    if (!seen.insert(items[k].name).second) violations.add(at, absl::StrCat("is '", items[k].name, "' a second time"));
+  }
+}
+
+void check_time(const SimulationSpec& spec, FieldViolations& violations) {
+  violations.check_range("time.step_ms", spec.step / kSecondsPerMillisecond, 0.001, 10000.0, "ms");
+  if (spec.max_step.has_value()) {
+    violations.check_range("time.max_step_ms", *spec.max_step / kSecondsPerMillisecond,
+                           spec.step / kSecondsPerMillisecond, 60000.0, "ms");
+  }
+  violations.check_range("time.end_s", spec.end, 1e-6, 1e6, "s");
+  violations.check_range("time.settle_skin_speed_mm_per_s", spec.settle_skin_speed * 1e3, 0.0, 1000.0, "mm/s");
+}
+
+}  // namespace
+
+absl::Status check_plan(const SimulationSpec& spec) {
+  FieldViolations violations;
+  violations.check_range("fat.viscosity_pa_s", spec.fat_viscosity, 1e-4, 1e6, "Pa s");
+  violations.check_range("fat.density_kg_m3", spec.fat_density, 1.0, 30000.0, "kg/m3");
+  check_time(spec, violations);
+  violations.check_range("damping.mass_per_s", spec.damping_mass, 0.0, 1e6, "1/s");
+  violations.check_range("damping.stiffness_s", spec.damping_stiffness, 0.0, 1e3, "s");
+  violations.check_range("gravity_m_s2", spec.gravity.norm(), 0.0, 1000.0, "m/s2");
+  if (spec.films.empty()) violations.add("films", "are none, must be at least 1");
+  check_count("films", spec.films.size(), kMaxFilms, violations);
+  check_count("injections", spec.injections.size(), kMaxInjections, violations);
+  check_count("probes", spec.probes.size(), kMaxProbes, violations);
+  check_names("films", spec.films, violations);
+  check_names("probes", spec.probes, violations);
+  std::set<std::string> zones;
+  for (size_t f = 0; f < spec.films.size(); ++f) {
+    for (size_t z = 0; z < spec.films[f].zones.size(); ++z) {
+      if (zones.insert(spec.films[f].zones[z].name).second) continue;
+      violations.add(absl::StrCat("films[", f, "].zones[", z, "].name"),
+                     absl::StrCat("is '", spec.films[f].zones[z].name, "' a second time: injections name zones"));
+    }
+    if (spec.films[f].wall != FilmWallKind::kRigid || !spec.films[f].initial_thickness.has_value()) continue;
+    violations.add(absl::StrCat("films[", f, "].initial_thickness_mm"), "is given, must be absent when wall is RIGID");
+  }
+  return violations.to_status();
+}
+
+}  // namespace lipofill::simulation

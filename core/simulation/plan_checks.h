@@ -1,0 +1,12 @@
+#pragma once
+
+#include "absl/status/status.h"
+#include "core/simulation/simulation_spec.h"
+
+namespace lipofill::simulation {
+
+/// Ranges of everything in a specification that needs no model to be judged: fat, time, damping, gravity, numbers of
+/// films, names. Field violations are named as in lipofill.v1.SimulationSpec, values in the units of those names.
+absl::Status check_plan(const SimulationSpec& spec);
+
+}  // namespace lipofill::simulation

@@ -1,0 +1,202 @@
+#include "core/simulation/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/field_violations.h"
+#include "core/simulation/plan_checks.h"
+#include "core/simulation/simulation_impl.h"
+
+namespace lipofill::simulation {
+namespace {
+
+/// A step that does not converge is tried again at half its size, this often.
+constexpr int kMaxHalvings = 10;
+constexpr double kStepGrowth = 1.25;
+/// A step grows only when the last one was easy.
+constexpr int kEasyFilmIterations = 30;
+constexpr int kEasyNewtonIterations = 3;
+/// The skin counts as at rest after this many slow steps in a row.
+constexpr int kSettledSteps = 5;
+
+}  // namespace
+
+Simulation::Simulation() : impl_(std::make_unique<Impl>()) {}
+Simulation::~Simulation() = default;
+
+absl::StatusOr<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<const FaceModel> model,
+                                                               SimulationSpec spec) {
+  std::unique_ptr<Simulation> simulation(new Simulation());
+  simulation->impl_->model = std::move(model);
+  simulation->impl_->spec = std::move(spec);
+  const absl::Status status = simulation->impl_->set_up();
+  if (!status.ok()) return status;
+  return simulation;
+}
+
+absl::Status Simulation::Impl::set_up() {
+  if (const absl::Status status = check_plan(spec); !status.ok()) return status;
+  FieldViolations violations;
+  for (size_t f = 0; f < spec.films.size(); ++f) {
+    auto film = place_film(*model, spec.films[f]);
+    violations.absorb(absl::StrCat("films[", f, "]"), film.status());
+    if (film.ok()) films.push_back(*std::move(film));
+  }
+  if (!violations.empty()) return violations.to_status();
+  for (size_t k = 0; k < spec.injections.size(); ++k) {
+    violations.absorb(absl::StrCat("injections[", k, "]"), schedule.add(*model, films, spec.injections[k], 0.0));
+  }
+  violations.absorb("", place_probes());
+  if (!violations.empty()) return violations.to_status();
+
+  auto created = CoupledStep::create(*model, films, spec);
+  if (!created.ok()) return created.status();
+  stepper = *std::move(created);
+  state = stepper->rest_state();
+  if (const absl::Status status = stepper->open_to_initial_thickness(state); !status.ok()) return status;
+  state.next_step = spec.step;
+  for (const FilmState& film : state.films) initial_volume += film.volume.sum();
+
+  StepOutcome start;
+  start.state = state;
+  start.gap = stepper->compute_gap(state);
+  start.min_scaled_jacobian = model->geometry.grid.min_scaled_jacobian;
+  fill_report(start, 0.0);
+  return absl::OkStatus();
+}
+
+absl::Status Simulation::Impl::place_probes() {
+  FieldViolations violations;
+  for (size_t k = 0; k < spec.probes.size(); ++k) {
+    const ProbeSpec& probe = spec.probes[k];
+    const std::string field = absl::StrCat("probes[", k, "]");
+    const auto film =
+        std::find_if(films.begin(), films.end(), [&](const FilmLayout& f) { return f.name == probe.film; });
+    const int index = probe.film.empty() ? 0 : static_cast<int>(film - films.begin());
+    if (index == static_cast<int>(films.size())) {
+      violations.add(field + ".film", absl::StrCat("is '", probe.film, "', which is no film of the plan"));
+      continue;
+    }
+    const auto place = geometry::locate_in_chart(model->geometry, probe.place);
+    violations.absorb(field + ".place", place.status());
+    if (!place.ok()) continue;
+    const int cell = films[index].cell_at(*place);
+    if (cell < 0)
+      violations.add(field + ".place", absl::StrCat("lies at (", place->xi, ", ", place->eta,
+                                                    ") of the chart, where the film has no cell"));
+    probes.push_back({index, cell});
+  }
+  return violations.to_status();
+}
+
+void Simulation::advance_step() {
+  Impl& impl = *impl_;
+  if (impl.phase != Phase::kRunning) return;
+  try {
+    StepOutcome outcome = impl.try_with_smaller_steps();
+    if (!outcome.accepted) {
+      impl.fail(outcome.reason);
+      return;
+    }
+    const double dt = outcome.state.time - impl.state.time;
+    impl.accept(std::move(outcome), dt);
+  } catch (const std::exception& error) {
+    impl.fail(absl::StrCat("ran out of a resource: ", error.what()));
+  }
+}
+
+StepOutcome Simulation::Impl::try_with_smaller_steps() {
+  const std::vector<double> delivered = schedule.delivered_each();
+  const double total = schedule.delivered();
+  double dt = state.next_step;
+  StepOutcome outcome;
+  for (int halving = 0; halving <= kMaxHalvings; ++halving, dt *= 0.5) {
+    outcome = stepper->try_step(state, schedule.deliver(films, state.time, dt), dt);
+    if (outcome.accepted) return outcome;
+    schedule.restore_delivered(delivered, total);
+  }
+  outcome.reason = absl::StrCat("at ", state.time, " s, with steps down to ", 2e3 * dt, " ms: ", outcome.reason);
+  return outcome;
+}
+
+void Simulation::Impl::accept(StepOutcome outcome, double dt) {
+  fill_report(outcome, dt);
+  state = std::move(outcome.state);
+  choose_next_step(outcome);
+  decide_phase();
+}
+
+void Simulation::Impl::choose_next_step(const StepOutcome& outcome) {
+  const bool injecting = state.time < schedule.end();
+  const double largest = injecting ? spec.step : spec.max_step.value_or(spec.step);
+  const bool easy =
+      outcome.film_iterations <= kEasyFilmIterations && outcome.newton_iterations <= kEasyNewtonIterations;
+  const double grown = easy ? report.step_size * kStepGrowth : report.step_size;
+  state.next_step = std::min(std::max(grown, std::min(spec.step, 2.0 * report.step_size)), largest);
+}
+
+void Simulation::Impl::decide_phase() {
+  const bool slow =
+      spec.settle_skin_speed > 0.0 && report.skin_speed < spec.settle_skin_speed && state.time >= schedule.end();
+  state.slow_steps = slow ? state.slow_steps + 1 : 0;
+  if (state.slow_steps >= kSettledSteps) {
+    phase = Phase::kSettled;
+    reason = absl::StrCat("the skin moves slower than ", spec.settle_skin_speed * 1e3, " mm/s");
+  } else if (state.time >= spec.end * (1.0 - 1e-12)) {
+    phase = Phase::kFinished;
+    reason = absl::StrCat("the end time of ", spec.end, " s came before the skin was at rest");
+  }
+}
+
+void Simulation::Impl::fail(std::string why) {
+  phase = Phase::kFailed;
+  reason = std::move(why);
+}
+
+Phase Simulation::phase() const {
+  return impl_->phase;
+}
+const std::string& Simulation::reason() const {
+  return impl_->reason;
+}
+const StepReport& Simulation::report() const {
+  return impl_->report;
+}
+const SimulationSpec& Simulation::spec() const {
+  return impl_->spec;
+}
+const FaceModel& Simulation::model() const {
+  return *impl_->model;
+}
+
+absl::Status Simulation::inject(const InjectionSpec& injection) {
+  if (impl_->phase != Phase::kRunning) {
+    return absl::FailedPreconditionError("the simulation has ended and takes no more injections");
+  }
+  InjectionSpec timed = injection;
+  if (!timed.start.has_value()) timed.start = std::max(impl_->state.time, impl_->schedule.end());
+  const absl::Status status = impl_->schedule.add(*impl_->model, impl_->films, timed, impl_->state.time);
+  if (!status.ok()) return status;
+  impl_->spec.injections.push_back(timed);
+  impl_->state.next_step = std::min(impl_->state.next_step, impl_->spec.step);
+  impl_->state.slow_steps = 0;
+  return absl::OkStatus();
+}
+
+int Simulation::n_hexahedra() const {
+  return impl_->model->geometry.grid.n_hexahedra();
+}
+int Simulation::n_dofs() const {
+  return impl_->stepper->n_dofs();
+}
+
+int Simulation::n_film_cells() const {
+  int n = 0;
+  for (const FilmLayout& film : impl_->films) n += film.grid.n_cells();
+  return n;
+}
+
+}  // namespace lipofill::simulation

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/simulation/coupled_step.h"
+#include "core/simulation/film_layout.h"
+#include "core/simulation/injection_schedule.h"
+#include "core/simulation/simulation.h"
+#include "core/simulation/simulation_state.h"
+
+namespace lipofill::simulation {
+
+/// A probe's cell.
+struct ProbePlace {
+  int film = 0;
+  int cell = 0;
+};
+
+/// What Simulation holds; its members are spread over simulation.cc (steps), step_report.cc, frames.cc and snapshot.cc.
+struct Simulation::Impl {
+  std::shared_ptr<const FaceModel> model;
+  SimulationSpec spec;
+  std::vector<FilmLayout> films;
+  std::vector<ProbePlace> probes;
+  InjectionSchedule schedule;
+  std::unique_ptr<CoupledStep> stepper;
+  SimulationState state;
+  Phase phase = Phase::kRunning;
+  std::string reason;
+  StepReport report;
+  double initial_volume = 0.0;
+
+  absl::Status set_up();
+  absl::Status place_probes();
+  absl::Status add_injection(const InjectionSpec& injection, double now);
+  StepOutcome try_with_smaller_steps();
+  void accept(StepOutcome outcome, double dt);
+  void choose_next_step(const StepOutcome& outcome);
+  void fail(std::string why);
+  void decide_phase();
+
+  void fill_report(const StepOutcome& outcome, double dt);
+  Eigen::Matrix3Xd skin_positions() const;
+  Eigen::Matrix3Xd skin_displacement() const;
+
+  std::vector<double> film_value_on_skin(const std::vector<geometry::ChartPoint>& places, bool pressure) const;
+};
+
+}  // namespace lipofill::simulation

@@ -1,0 +1,129 @@
+#include <cstring>
+#include <string>
+
+#include "core/base/hash.h"
+#include "core/simulation/simulation_impl.h"
+
+namespace lipofill::simulation {
+namespace {
+
+constexpr char kMagic[] = "lipofill-state-1";
+
+/// Visits every number of the mutable state in a fixed order, so that writing, reading and hashing cannot disagree.
+template <typename Visitor>
+void visit_state(SimulationState& state, Visitor& visit) {
+  visit.number(state.step);
+  visit.number(state.time);
+  visit.number(state.next_step);
+  visit.number(state.slow_steps);
+  visit.array(state.positions.data(), state.positions.size());
+  visit.array(state.velocities.data(), state.velocities.size());
+  for (FilmState& film : state.films) {
+    visit.array(film.volume.data(), film.volume.size());
+    visit.array(film.pressure.data(), film.pressure.size());
+    visit.array(film.velocity.data(), film.velocity.size());
+  }
+}
+
+struct Writer {
+  std::string bytes;
+  template <typename T>
+  void number(T& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  void array(double* values, Eigen::Index count) {
+    number(count);
+    bytes.append(reinterpret_cast<const char*>(values), static_cast<size_t>(count) * sizeof(double));
+  }
+};
+
+struct Reader {
+  std::string_view bytes;
+  bool ok = true;
+  void raw(void* out, size_t size) {
+    ok = ok && bytes.size() >= size;
+    if (!ok) return;
+    std::memcpy(out, bytes.data(), size);
+    bytes.remove_prefix(size);
+  }
+  template <typename T>
+  void number(T& value) {
+    raw(&value, sizeof value);
+  }
+  void array(double* values, Eigen::Index count) {
+    Eigen::Index stored = -1;
+    number(stored);
+    ok = ok && stored == count;
+    if (ok) raw(values, static_cast<size_t>(count) * sizeof(double));
+  }
+};
+
+struct HashVisitor {
+  Hasher hasher;
+  template <typename T>
+  void number(T& value) {
+    hasher.add(value);
+  }
+  void array(double* values, Eigen::Index count) {
+    hasher.add_bytes(values, static_cast<size_t>(count) * sizeof(double));
+  }
+};
+
+}  // namespace
+
+std::string Simulation::state_hash() const {
+  HashVisitor visitor;
+  SimulationState state = impl_->state;
+  visit_state(state, visitor);
+  return visitor.hasher.hex_digest();
+}
+
+std::string Simulation::snapshot() const {
+  Writer writer;
+  writer.bytes = kMagic;
+  SimulationState state = impl_->state;
+  visit_state(state, writer);
+  double shift = impl_->stepper->shift();
+  writer.number(shift);
+  int phase = static_cast<int>(impl_->phase);
+  writer.number(phase);
+  std::vector<double> delivered = impl_->schedule.delivered_each();
+  writer.array(delivered.data(), static_cast<Eigen::Index>(delivered.size()));
+  double total = impl_->schedule.delivered();
+  writer.number(total);
+  double initial = impl_->initial_volume;
+  writer.number(initial);
+  return writer.bytes;
+}
+
+absl::Status Simulation::restore(std::string_view snapshot) {
+  Impl& impl = *impl_;
+  const size_t magic_size = sizeof kMagic - 1;
+  Reader reader{snapshot.substr(std::min(magic_size, snapshot.size()))};
+  SimulationState state = impl.state;
+  double shift = 0.0, total = 0.0, initial = 0.0;
+  int phase = 0;
+  std::vector<double> delivered = impl.schedule.delivered_each();
+  visit_state(state, reader);
+  reader.number(shift);
+  reader.number(phase);
+  reader.array(delivered.data(), static_cast<Eigen::Index>(delivered.size()));
+  reader.number(total);
+  reader.number(initial);
+  if (!snapshot.starts_with(kMagic) || !reader.ok || !reader.bytes.empty()) {
+    return absl::DataLossError("not a state of this simulation: its size or mark is another");
+  }
+  impl.state = std::move(state);
+  impl.stepper->set_shift(shift);
+  impl.phase = static_cast<Phase>(phase);
+  impl.schedule.restore_delivered(delivered, total);
+  impl.initial_volume = initial;
+  StepOutcome here;
+  here.state = impl.state;
+  here.gap = impl.stepper->compute_gap(impl.state);
+  here.min_scaled_jacobian = impl.stepper->compute_min_scaled_jacobian(impl.state);
+  impl.fill_report(here, 0.0);
+  return absl::OkStatus();
+}
+
+}  // namespace lipofill::simulation

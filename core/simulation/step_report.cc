@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/coupling/gap_volume.h"
+#include "core/simulation/simulation_impl.h"
+
+namespace lipofill::simulation {
+namespace {
+
+/// Sums and extremes of a film's cells.
+struct FilmFigures {
+  double max_pressure = -std::numeric_limits<double>::infinity();
+  double min_pressure = std::numeric_limits<double>::infinity();
+  double pressure_area = 0.0;
+  double area = 0.0;
+  double volume = 0.0;
+  double max_thickness = 0.0;
+
+  void add(double cell_pressure, double cell_volume, double cell_area) {
+    max_pressure = std::max(max_pressure, cell_pressure);
+    min_pressure = std::min(min_pressure, cell_pressure);
+    pressure_area += cell_pressure * cell_area;
+    area += cell_area;
+    volume += cell_volume;
+    max_thickness = std::max(max_thickness, cell_volume / cell_area);
+  }
+};
+
+double largest_column(const Eigen::Matrix3Xd& vectors) {
+  return vectors.cols() == 0 ? 0.0 : vectors.colwise().norm().maxCoeff();
+}
+
+}  // namespace
+
+Eigen::Matrix3Xd Simulation::Impl::skin_positions() const {
+  const geometry::LayeredGrid& grid = model->geometry.grid;
+  if (stepper->tissue() == nullptr) return grid.nodes.leftCols(grid.nodes_per_level());
+  Eigen::Matrix3Xd skin(3, grid.nodes_per_level());
+  for (int s = 0; s < grid.nodes_per_level(); ++s) skin.col(s) = state.positions.col(stepper->tissue()->skin_nodes[s]);
+  return skin;
+}
+
+Eigen::Matrix3Xd Simulation::Impl::skin_displacement() const {
+  const geometry::LayeredGrid& grid = model->geometry.grid;
+  return skin_positions() - grid.nodes.leftCols(grid.nodes_per_level());
+}
+
+/// Fills the report from an outcome that becomes the state.
+void Simulation::Impl::fill_report(const StepOutcome& outcome, double dt) {
+  const SimulationState& next = outcome.state;
+  FilmFigures figures;
+  report.probe_thickness.assign(probes.size(), 0.0);
+  report.probe_pressure.assign(probes.size(), 0.0);
+  for (size_t f = 0; f < films.size(); ++f) {
+    const Eigen::VectorXd area = stepper->film_metric(next, static_cast<int>(f)).area;
+    const FilmState& film = next.films[f];
+    for (int cell = 0; cell < films[f].grid.n_cells(); ++cell)
+      figures.add(film.pressure[cell], film.volume[cell], area[cell]);
+    for (size_t k = 0; k < probes.size(); ++k) {
+      if (probes[k].film != static_cast<int>(f)) continue;
+      report.probe_thickness[k] = film.volume[probes[k].cell] / area[probes[k].cell];
+      report.probe_pressure[k] = film.pressure[probes[k].cell];
+    }
+  }
+  report.step = next.step;
+  report.time = next.time;
+  report.step_size = dt;
+  report.injected = schedule.delivered();
+  report.initial_volume = initial_volume;
+  report.film_volume = figures.volume;
+  report.gap_volume = outcome.gap.sum();
+  const double scale = std::max({std::abs(report.injected), initial_volume, std::numeric_limits<double>::min()});
+  report.film_volume_relative_error = std::abs(figures.volume - initial_volume - report.injected) / scale;
+  double mismatch = 0.0;
+  Eigen::Index offset = 0;
+  for (const FilmState& film : next.films) {
+    mismatch += (outcome.gap.segment(offset, film.volume.size()) - film.volume).cwiseAbs().sum();
+    offset += film.volume.size();
+  }
+  report.gap_volume_relative_error = mismatch / std::max(figures.volume, std::numeric_limits<double>::min());
+  report.max_pressure = figures.max_pressure;
+  report.min_pressure = figures.min_pressure;
+  report.mean_pressure = figures.pressure_area / figures.area;
+  report.max_thickness = figures.max_thickness;
+  report.film_iterations = outcome.film_iterations;
+  report.newton_iterations = outcome.newton_iterations;
+  report.min_scaled_jacobian = outcome.min_scaled_jacobian;
+  if (stepper->tissue() == nullptr) return;
+  const geometry::LayeredGrid& grid = model->geometry.grid;
+  Eigen::Matrix3Xd skin(3, grid.nodes_per_level());
+  double speed = 0.0;
+  for (int s = 0; s < grid.nodes_per_level(); ++s) {
+    const int node = stepper->tissue()->skin_nodes[s];
+    skin.col(s) = next.positions.col(node);
+    speed = std::max(speed, next.velocities.col(node).norm());
+  }
+  const Eigen::Matrix3Xd rest = grid.nodes.leftCols(grid.nodes_per_level());
+  report.skin_speed = speed;
+  report.skin_max_displacement = largest_column(skin - rest);
+  report.skin_volume_change = coupling::compute_swept_volume(grid, rest, skin);
+}
+
+std::vector<ZoneReport> Simulation::zone_reports() const {
+  std::vector<ZoneReport> reports;
+  const Impl& impl = *impl_;
+  for (size_t f = 0; f < impl.films.size(); ++f) {
+    const FilmLayout& layout = impl.films[f];
+    const Eigen::VectorXd area = impl.stepper->film_metric(impl.state, static_cast<int>(f)).area;
+    std::vector<FilmFigures> zones(layout.zone_names.size());
+    for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {
+      zones[layout.grid.zone_of_cell[cell]].add(impl.state.films[f].pressure[cell], impl.state.films[f].volume[cell],
+                                                area[cell]);
+    }
+    for (size_t z = 0; z < zones.size(); ++z) {
+      reports.push_back(
+          {layout.zone_names[z], zones[z].volume, zones[z].pressure_area / zones[z].area, zones[z].max_thickness});
+    }
+  }
+  return reports;
+}
+
+}  // namespace lipofill::simulation

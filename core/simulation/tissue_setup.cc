@@ -1,0 +1,125 @@
+#include "core/simulation/tissue_setup.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <functional>
+#include <utility>
+
+namespace lipofill::simulation {
+namespace {
+
+using coupling::SplitMesh;
+using geometry::LayeredGrid;
+
+/// Holds nodes as a support says. `axis`: the direction that rollers block.
+class SupportBuilder {
+ public:
+  SupportBuilder(const LayeredGrid& grid, const SplitMesh& split) : grid_(grid), split_(split) {
+    supports_.fixed.assign(split.mesh.n_nodes(), {false, false, false});
+    supports_.spring.assign(split.mesh.n_nodes(), 0.0);
+    for (const int node : split.bone_nodes) supports_.fixed[node] = {true, true, true};
+  }
+
+  void hold_face(const Support& support, int axis, const std::vector<std::array<int, 4>>& quads) {
+    if (support.kind == SupportKind::kFree) return;
+    for (const std::array<int, 4>& quad : quads) {
+      for (const int node : quad) {
+        if (support.kind == SupportKind::kClamped) supports_.fixed[node] = {true, true, true};
+        if (support.kind == SupportKind::kRollers) supports_.fixed[node][axis] = true;
+        if (support.kind == SupportKind::kElastic) supports_.spring[node] += 0.25 * support.stiffness * area(quad);
+      }
+    }
+  }
+
+  /// Quadrilaterals of the side i = 0 or n_xi (`along_eta`) or j = 0 or n_eta; through all levels, both copies of
+  /// doubled nodes.
+  std::vector<std::array<int, 4>> side(bool along_eta, bool high) const {
+    std::vector<std::array<int, 4>> quads;
+    const int count = along_eta ? grid_.n_eta : grid_.n_xi;
+    for (int level = 0; level + 1 < grid_.n_levels(); ++level) {
+      for (int k = 0; k < count; ++k) {
+        const int a = side_place(along_eta, high, k);
+        const int b = side_place(along_eta, high, k + 1);
+        quads.push_back({inner(level, a), inner(level, b), outer(level + 1, b), outer(level + 1, a)});
+      }
+    }
+    return quads;
+  }
+
+  /// Quadrilaterals of the deep face that rest on the base; where a film lies on the base the tissue is free of it.
+  std::vector<std::array<int, 4>> base() const {
+    std::vector<std::array<int, 4>> quads;
+    const int level = grid_.n_levels() - 1;
+    for (int j = 0; j < grid_.n_eta; ++j) {
+      for (int i = 0; i < grid_.n_xi; ++i) {
+        quads.push_back({inner(level, grid_.surface_index(i, j)), inner(level, grid_.surface_index(i + 1, j)),
+                         inner(level, grid_.surface_index(i + 1, j + 1)), inner(level, grid_.surface_index(i, j + 1))});
+      }
+    }
+    return quads;
+  }
+
+  solid::NodeSupports take() { return std::move(supports_); }
+
+ private:
+  int outer(int level, int place) const { return split_.outer_node[level * grid_.nodes_per_level() + place]; }
+  int inner(int level, int place) const { return split_.inner_node[level * grid_.nodes_per_level() + place]; }
+  int side_place(bool along_eta, bool high, int k) const {
+    return along_eta ? grid_.surface_index(high ? grid_.n_xi : 0, k) : grid_.surface_index(k, high ? grid_.n_eta : 0);
+  }
+  double area(const std::array<int, 4>& quad) const {
+    const auto x = [&](int c) { return split_.mesh.rest_positions.col(quad[c]); };
+    return 0.5 * Eigen::Vector3d(x(2) - x(0)).cross(Eigen::Vector3d(x(3) - x(1))).norm();
+  }
+
+  const LayeredGrid& grid_;
+  const SplitMesh& split_;
+  solid::NodeSupports supports_;
+};
+
+solid::NodeSupports hold_nodes(const FaceModel& model, const SplitMesh& split) {
+  SupportBuilder builder(model.geometry.grid, split);
+  builder.hold_face(model.base, 2, builder.base());
+  for (const bool high : {false, true}) {
+    builder.hold_face(model.rim, 0, builder.side(true, high));
+    builder.hold_face(model.rim, 1, builder.side(false, high));
+  }
+  return builder.take();
+}
+
+coupling::WallNodes walls_at(const LayeredGrid& grid, const SplitMesh& split, int level) {
+  const auto begin = static_cast<ptrdiff_t>(level) * grid.nodes_per_level();
+  const auto end = begin + grid.nodes_per_level();
+  return {{split.outer_node.begin() + begin, split.outer_node.begin() + end},
+          {split.inner_node.begin() + begin, split.inner_node.begin() + end}};
+}
+
+}  // namespace
+
+absl::StatusOr<TissueSetup> set_up_tissue(const FaceModel& model, const std::vector<FilmLayout>& films,
+                                          const solid::RayleighDamping& damping) {
+  const LayeredGrid& grid = model.geometry.grid;
+  std::vector<std::vector<bool>> open(grid.n_levels());
+  for (const FilmLayout& film : films) {
+    if (film.wall != FilmWallKind::kTissue) continue;
+    const std::vector<bool> of_film = find_open_nodes(grid, film.grid);
+    std::vector<bool>& level = open[film.level];
+    if (level.empty()) level.assign(grid.nodes_per_level(), false);
+    for (size_t s = 0; s < of_film.size(); ++s) level[s] = level[s] || of_film[s];
+  }
+  SplitMesh split = coupling::split_mesh(grid, open);
+  solid::NodeSupports supports = hold_nodes(model, split);
+  std::vector<solid::ElasticMaterial> materials;
+  for (const TissueLayerSpec& layer : model.layers) materials.push_back(layer.material);
+  auto tissue = solid::Tissue::create(split.mesh, std::move(materials), std::move(supports), damping);
+  if (!tissue.ok()) return tissue.status();
+
+  TissueSetup setup{*std::move(tissue), {}, {}};
+  for (const FilmLayout& film : films) {
+    if (film.wall == FilmWallKind::kTissue) setup.walls.push_back(walls_at(grid, split, film.level));
+  }
+  setup.skin_nodes = walls_at(grid, split, 0).outer;
+  return setup;
+}
+
+}  // namespace lipofill::simulation

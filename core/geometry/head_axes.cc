@@ -1,5 +1,7 @@
 #include "core/geometry/head_axes.h"
 
+#include <Eigen/Geometry>
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -27,6 +27,18 @@ absl::StatusOr<uint64_t> size_of_file(const std::filesystem::path& file) {
   return size;
 }
 
+/// Lower-case hex of a digest.
+std::string hex(const unsigned char* digest, unsigned int size) {
+  return absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), size));
+}
+
+std::string sha256_of_text(const std::string& text) {
+  unsigned char digest[EVP_MAX_MD_SIZE];
+  unsigned int size = 0;
+  EVP_Digest(text.data(), text.size(), digest, &size, EVP_sha256(), nullptr);
+  return hex(digest, size);
+}
+
 /// Announces the scan. The request id is made of its content, so that a repeated call finds what the first one began.
 absl::StatusOr<v1::Scan> announce(const Connection& connection, const std::string& parent,
                                   const std::filesystem::path& file, v1::ScanUnit unit) {
@@ -38,7 +50,7 @@ absl::StatusOr<v1::Scan> announce(const Connection& connection, const std::strin
   if (!sha256.ok()) return sha256.status();
   v1::CreateScanRequest request;
   request.set_request_id(
-      absl::StrCat("upload-", *sha256, "-", static_cast<int>(*format), "-", static_cast<int>(unit), "-", parent));
+      sha256_of_text(absl::StrCat(parent, " ", *sha256, " ", static_cast<int>(*format), " ", static_cast<int>(unit))));
   request.set_parent(parent);
   request.set_format(*format);
   request.set_unit(unit == v1::SCAN_UNIT_UNSPECIFIED ? v1::MILLIMETRE : unit);
@@ -100,7 +112,7 @@ absl::StatusOr<std::string> sha256_of_file(const std::filesystem::path& file) {
   unsigned int size = 0;
   good = good && EVP_DigestFinal_ex(context.get(), digest, &size) == 1;
   if (!good || stream.bad()) return absl::InternalError(absl::StrCat("cannot hash ", file.string()));
-  return absl::BytesToHexString(absl::string_view(reinterpret_cast<const char*>(digest), size));
+  return hex(digest, size);
 }
 
 absl::StatusOr<v1::Scan> upload_scan(const Connection& connection, const std::string& parent,

@@ -1,0 +1,151 @@
+#include "client/cpp/volume/skin_extraction.h"
+
+#include <vtkCleanPolyData.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkMatrix4x4.h>
+#include <vtkMatrixToLinearTransform.h>
+#include <vtkNew.h>
+#include <vtkOBJWriter.h>
+#include <vtkPLYWriter.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataConnectivityFilter.h>
+#include <vtkQuadricDecimation.h>
+#include <vtkReverseSense.h>
+#include <vtkSTLWriter.h>
+#include <vtkTransformPolyDataFilter.h>
+#include <vtkWindowedSincPolyDataFilter.h>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "client/cpp/io/vtk_messages.h"
+#include "client/cpp/volume/header_text.h"
+#include "client/cpp/volume/volume_reader.h"
+
+namespace lipofill::client {
+namespace {
+
+using Surface = vtkSmartPointer<vtkPolyData>;
+
+template <typename Filter>
+Surface output_of(Filter* filter, vtkPolyData* input) {
+  filter->SetInputData(input);
+  filter->Update();
+  return filter->GetOutput();
+}
+
+Surface contour(const Volume& volume, double isovalue) {
+  vtkNew<vtkFlyingEdges3D> contour;
+  contour->SetInputData(volume.voxels);
+  contour->SetValue(0, (isovalue - volume.intercept) / volume.slope);
+  contour->ComputeNormalsOff();
+  contour->ComputeScalarsOff();
+  contour->Update();
+  return contour->GetOutput();
+}
+
+/// From voxel indices to millimetres; triangles keep facing the lower values where the axes are left-handed or the
+/// slope is negative.
+Surface to_millimetres(const Volume& volume, vtkPolyData* surface) {
+  vtkNew<vtkMatrix4x4> matrix;
+  matrix->DeepCopy(volume.index_to_mm.data());
+  vtkNew<vtkMatrixToLinearTransform> transform;
+  transform->SetInput(matrix);
+  vtkNew<vtkTransformPolyDataFilter> mapped;
+  mapped->SetTransform(transform);
+  Surface result = output_of(mapped.Get(), surface);
+  if (matrix->Determinant() * volume.slope > 0) return result;
+  vtkNew<vtkReverseSense> reversed;
+  reversed->ReverseCellsOn();
+  reversed->ReverseNormalsOff();
+  return output_of(reversed.Get(), result);
+}
+
+Surface keep_largest(vtkPolyData* surface, bool keep_all, int* components) {
+  vtkNew<vtkPolyDataConnectivityFilter> connectivity;
+  if (keep_all) {
+    connectivity->SetExtractionModeToAllRegions();
+  } else {
+    connectivity->SetExtractionModeToLargestRegion();
+  }
+  Surface kept = output_of(connectivity.Get(), surface);
+  *components = connectivity->GetNumberOfExtractedRegions();
+  // The filter leaves the points of the other pieces behind.
+  vtkNew<vtkCleanPolyData> clean;
+  clean->PointMergingOff();
+  Surface result = output_of(clean.Get(), kept);
+  result->GetPointData()->Initialize();
+  return result;
+}
+
+Surface smooth(vtkPolyData* surface, int iterations) {
+  vtkNew<vtkWindowedSincPolyDataFilter> filter;
+  filter->SetNumberOfIterations(iterations);
+  filter->SetPassBand(0.1);
+  filter->NormalizeCoordinatesOn();
+  filter->BoundarySmoothingOff();
+  filter->FeatureEdgeSmoothingOff();
+  return output_of(filter.Get(), surface);
+}
+
+Surface decimate(vtkPolyData* surface, uint64_t target) {
+  const auto count = static_cast<double>(surface->GetNumberOfCells());
+  if (static_cast<double>(target) >= count) return surface;
+  vtkNew<vtkQuadricDecimation> filter;
+  filter->SetTargetReduction(1.0 - static_cast<double>(target) / count);
+  filter->VolumePreservationOn();
+  return output_of(filter.Get(), surface);
+}
+
+absl::Status write_surface(const std::filesystem::path& out, vtkPolyData* surface) {
+  const VtkMessages messages;
+  const std::string extension = absl::AsciiStrToLower(out.extension().string());
+  const auto write = [&](auto* writer) {
+    writer->SetFileName(out.c_str());
+    writer->SetInputData(surface);
+    writer->Write();
+  };
+  if (extension == ".obj") {
+    write(vtkNew<vtkOBJWriter>().Get());
+  } else if (extension == ".ply") {
+    write(vtkNew<vtkPLYWriter>().Get());
+  } else {
+    vtkNew<vtkSTLWriter> writer;
+    writer->SetFileTypeToBinary();
+    write(writer.Get());
+  }
+  if (messages.error().empty()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("cannot write ", out.string(), ": ", messages.error()));
+}
+
+absl::Status check_output_name(const std::filesystem::path& out) {
+  const std::string extension = absl::AsciiStrToLower(out.extension().string());
+  if (extension == ".obj" || extension == ".ply" || extension == ".stl") return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("output ", out.string(), ": '", extension, "' is not one of .obj, .ply, .stl"));
+}
+
+}  // namespace
+
+absl::StatusOr<ExtractedSkin> extract_skin(const std::filesystem::path& file, const std::filesystem::path& out,
+                                           const SkinExtraction& options) {
+  if (auto status = check_output_name(out); !status.ok()) return status;
+  auto volume = read_volume(file);
+  if (!volume.ok()) return volume.status();
+  ExtractedSkin skin;
+  Surface surface = contour(*volume, options.isovalue);
+  volume->voxels = nullptr;
+  if (surface->GetNumberOfCells() == 0)
+    return bad_volume(file, absl::StrCat("has no surface at the value ", options.isovalue));
+  surface = keep_largest(to_millimetres(*volume, surface), options.all_components, &skin.components);
+  if (options.smoothing_iterations > 0) surface = smooth(surface, options.smoothing_iterations);
+  if (options.target_triangles > 0) surface = decimate(surface, options.target_triangles);
+  if (auto status = write_surface(out, surface); !status.ok()) return status;
+  skin.vertices = static_cast<uint64_t>(surface->GetNumberOfPoints());
+  skin.triangles = static_cast<uint64_t>(surface->GetNumberOfCells());
+  surface->GetBounds(skin.bounds_mm.data());
+  skin.frame = volume->header.frame;
+  return skin;
+}
+
+}  // namespace lipofill::client

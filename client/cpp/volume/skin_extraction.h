@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "absl/status/statusor.h"
+
+namespace lipofill::client {
+
+struct SkinExtraction {
+  double isovalue = -300.0;       ///< in the volume's own values; -300 HU is the skin in a CT
+  bool all_components = false;    ///< keep everything, not only the largest connected piece
+  int smoothing_iterations = 0;   ///< windowed sinc; 0: none
+  uint64_t target_triangles = 0;  ///< decimate down to about as many; 0: keep all
+};
+
+/// What came out.
+struct ExtractedSkin {
+  uint64_t vertices = 0;
+  uint64_t triangles = 0;
+  int components = 0;  ///< before the largest was chosen
+  std::array<double, 6> bounds_mm{};
+  std::string frame;  ///< "LPS" (x left, y back, z up) or "the file's own"
+};
+
+/// The surface where a volume takes a value, as triangles in millimetres whose normals point to the lower values (out
+/// of a head in air), in the patient's LPS axes where the volume says what they are. The largest connected piece of a
+/// CT head at -300 HU is the skin together with the walls of the airways and sinuses that open to the outside; the
+/// model builder keeps only what is seen from outside.
+/// @param volume  .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz
+/// @param out     .obj, .ply or .stl
+/// INVALID_ARGUMENT for a volume that cannot be read or has no such surface. Needs memory for the volume and its
+/// surface. Checked by tests/unit/client/volume_test.cc: a sphere in each format, oblique axes, truncated files.
+absl::StatusOr<ExtractedSkin> extract_skin(const std::filesystem::path& volume, const std::filesystem::path& out,
+                                           const SkinExtraction& options);
+
+}  // namespace lipofill::client

@@ -1,0 +1,91 @@
+#include "client/cpp/volume/volume_reader.h"
+
+#include <vtkMatrix4x4.h>
+#include <vtkMetaImageReader.h>
+#include <vtkNIFTIImageHeader.h>
+#include <vtkNIFTIImageReader.h>
+#include <vtkNew.h>
+#include <vtkNrrdReader.h>
+#include <vtkPointData.h>
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "client/cpp/io/vtk_messages.h"
+#include "client/cpp/volume/header_text.h"
+
+namespace lipofill::client {
+namespace {
+
+absl::Status take_voxels(const std::filesystem::path& file, vtkImageReader2* reader, Volume* volume) {
+  const VtkMessages messages;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  if (!messages.error().empty()) return bad_volume(file, absl::StrCat("cannot be read: ", messages.error()));
+  vtkImageData* image = reader->GetOutput();
+  int size[3];
+  image->GetDimensions(size);
+  for (size_t i = 0; i < 3; ++i) {
+    if (static_cast<uint64_t>(size[i]) != volume->header.size[i])
+      return bad_volume(file, "has voxels of another size than its header");
+  }
+  if (image->GetNumberOfScalarComponents() != 1) return bad_volume(file, "has more than one value a voxel");
+  volume->voxels = vtkSmartPointer<vtkImageData>::New();
+  volume->voxels->SetDimensions(size);
+  volume->voxels->GetPointData()->SetScalars(image->GetPointData()->GetScalars());
+  return absl::OkStatus();
+}
+
+/// NIfTI maps voxel centres to RAS millimetres by its sform, else its qform, else by the spacing alone. The reader has
+/// put the slices into the order its matrices speak of.
+void take_nifti_geometry(vtkNIFTIImageReader* reader, Volume* volume) {
+  const vtkNIFTIImageHeader* header = reader->GetNIFTIHeader();
+  vtkMatrix4x4* matrix = const_cast<vtkNIFTIImageHeader*>(header)->GetSFormCode() > 0 ? reader->GetSFormMatrix()
+                                                                                      : reader->GetQFormMatrix();
+  double spacing[3];
+  reader->GetOutput()->GetSpacing(spacing);
+  const bool oriented = volume->header.frame == "LPS";
+  volume->index_to_mm = {};
+  volume->index_to_mm[15] = 1.0;
+  for (int row = 0; row < 3; ++row) {
+    const double to_lps = oriented && row < 2 ? -1.0 : 1.0;
+    for (int column = 0; column < 4; ++column) {
+      const double unit = column < 3 ? spacing[column] : 1.0;
+      const double entry = matrix != nullptr ? matrix->GetElement(row, column) : (row == column ? 1.0 : 0.0);
+      volume->index_to_mm[static_cast<size_t>(4 * row + column)] = to_lps * entry * unit;
+    }
+  }
+  if (reader->GetRescaleSlope() != 0.0) {
+    volume->slope = reader->GetRescaleSlope();
+    volume->intercept = reader->GetRescaleIntercept();
+  }
+}
+
+double determinant(const Affine& m) {
+  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+}
+
+}  // namespace
+
+absl::StatusOr<Volume> read_volume(const std::filesystem::path& file) {
+  auto header = read_volume_header(file);
+  if (!header.ok()) return header.status();
+  Volume volume;
+  volume.header = *header;
+  volume.index_to_mm = header->index_to_mm;
+  absl::Status status;
+  if (header->format == VolumeFormat::kMetaImage) {
+    status = take_voxels(file, vtkNew<vtkMetaImageReader>(), &volume);
+  } else if (header->format == VolumeFormat::kNrrd) {
+    status = take_voxels(file, vtkNew<vtkNrrdReader>(), &volume);
+  } else {
+    vtkNew<vtkNIFTIImageReader> reader;
+    status = take_voxels(file, reader, &volume);
+    if (status.ok()) take_nifti_geometry(reader, &volume);
+  }
+  if (!status.ok()) return status;
+  if (!(std::abs(determinant(volume.index_to_mm)) > 1e-9)) return bad_volume(file, "has axes that do not span space");
+  return volume;
+}
+
+}  // namespace lipofill::client

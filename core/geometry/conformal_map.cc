@@ -97,16 +97,16 @@ double compute_length(const SurfaceMesh& mesh, const std::vector<int>& loop) {
 ClosedDisc close_holes(const SurfaceMesh& mesh) {
   ClosedDisc disc{mesh, {}};
   auto loops = trace_boundary_loops(mesh, find_neighbours(mesh).across);
-  std::stable_sort(loops.begin(), loops.end(), [&](const auto& a, const auto& b) {
-    return compute_length(mesh, a) > compute_length(mesh, b);
-  });
+  std::stable_sort(loops.begin(), loops.end(),
+                   [&](const auto& a, const auto& b) { return compute_length(mesh, a) > compute_length(mesh, b); });
   if (loops.empty()) return disc;
   disc.rim = loops.front();
   for (size_t k = 1; k < loops.size(); ++k) {
     const int centre = disc.mesh.n_vertices();
     disc.mesh.points.conservativeResize(3, centre + 1);
     disc.mesh.points.col(centre).setZero();
-    for (const int v : loops[k]) disc.mesh.points.col(centre) += mesh.points.col(v) / static_cast<double>(loops[k].size());
+    for (const int v : loops[k])
+      disc.mesh.points.col(centre) += mesh.points.col(v) / static_cast<double>(loops[k].size());
     for (size_t m = 0; m < loops[k].size(); ++m) {
       disc.mesh.triangles.push_back({loops[k][(m + 1) % loops[k].size()], loops[k][m], centre});
     }

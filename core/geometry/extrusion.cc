@@ -23,7 +23,8 @@ Eigen::MatrixXd compute_depths(const LayeredGrid& grid, const std::vector<LayerG
     for (int j = 0; j <= grid.n_eta; ++j) {
       for (int i = 0; i <= grid.n_xi; ++i) {
         const int node = grid.surface_index(i, j);
-        const double thickness = layers[l].thickness.at(static_cast<double>(i) / grid.n_xi, static_cast<double>(j) / grid.n_eta);
+        const double thickness =
+            layers[l].thickness.at(static_cast<double>(i) / grid.n_xi, static_cast<double>(j) / grid.n_eta);
         for (int k = 1; k <= n; ++k) depth(node, first + k) = depth(node, first) + thickness * k / n;
       }
     }
@@ -48,9 +49,12 @@ int layer_of_level(const LayeredGrid& grid, int level) {
   return layer;
 }
 
-/// Tries normals smoothed over longer and longer lengths and keeps the first that gives well-shaped hexahedra, or the best.
-WorstHexahedron extrude_along_smoothed_normals(const Eigen::MatrixXd& depth, const Eigen::Vector2d& spacing, LayeredGrid& grid) {
-  const Eigen::Matrix3Xd normals = compute_grid_normals(grid.n_xi, grid.n_eta, grid.nodes.leftCols(grid.nodes_per_level()));
+/// Tries normals smoothed over longer and longer lengths and keeps the first that gives well-shaped hexahedra, or the
+/// best.
+WorstHexahedron extrude_along_smoothed_normals(const Eigen::MatrixXd& depth, const Eigen::Vector2d& spacing,
+                                               LayeredGrid& grid) {
+  const Eigen::Matrix3Xd normals =
+      compute_grid_normals(grid.n_xi, grid.n_eta, grid.nodes.leftCols(grid.nodes_per_level()));
   LayeredGrid best = grid;
   WorstHexahedron best_worst;
   best_worst.scaled_jacobian = -2.0;
@@ -82,11 +86,12 @@ absl::StatusOr<LayeredGrid> extrude_layers(const Eigen::Matrix3Xd& skin, int n_x
   const WorstHexahedron worst = extrude_along_smoothed_normals(depth, compute_mean_spacing(n_xi, n_eta, skin), grid);
   grid.min_scaled_jacobian = worst.scaled_jacobian;
   if (worst.scaled_jacobian >= kSmallestScaledJacobian) return grid;
-  return absl::FailedPreconditionError(absl::StrFormat(
-      "layers[%d] folds where the face curves: scaled Jacobian %.3f near (%.1f, %.1f, %.1f) mm, must be at least %.1f; make the "
-      "layers thinner or move the corners",
-      layer_of_level(grid, worst.level), worst.scaled_jacobian, worst.centre.x() * 1e3, worst.centre.y() * 1e3,
-      worst.centre.z() * 1e3, kSmallestScaledJacobian));
+  return absl::FailedPreconditionError(
+      absl::StrFormat("layers[%d] folds where the face curves: scaled Jacobian %.3f near (%.1f, %.1f, %.1f) mm, must "
+                      "be at least %.1f; make the "
+                      "layers thinner or move the corners",
+                      layer_of_level(grid, worst.level), worst.scaled_jacobian, worst.centre.x() * 1e3,
+                      worst.centre.y() * 1e3, worst.centre.z() * 1e3, kSmallestScaledJacobian));
 }
 
 }  // namespace lipofill::geometry

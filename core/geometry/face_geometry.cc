@@ -50,8 +50,8 @@ void check_layers(const FaceGeometrySpec& spec, FieldViolations& violations) {
   const long long hexahedra = through * spec.n_xi * spec.n_eta;
   if (hexahedra > kMaxHexahedra) {
     violations.add("n_xi", absl::StrCat("is ", spec.n_xi, ", which with n_eta ", spec.n_eta, " and ", through,
-                                        " elements through the layers makes ", hexahedra, " hexahedra, must be at most ",
-                                        kMaxHexahedra));
+                                        " elements through the layers makes ", hexahedra,
+                                        " hexahedra, must be at most ", kMaxHexahedra));
   }
 }
 
@@ -117,18 +117,18 @@ double choose_smoothing_length(const SurfaceMesh& patch, const Eigen::Vector2d& 
 }
 
 /// Scan vertices over the region, with their feet on the skin.
-void find_riders(const ScanRegion& region, FaceGeometry& geometry) {
-  std::vector<bool> in_patch(geometry.scan.n_vertices() + 1, false);
-  for (const int v : region.patch.whole_of_vertex) {
-    if (v >= 0) in_patch[v] = true;
+void find_riders(const ScanRegion& region, const std::vector<bool>& is_vertex_near, FaceGeometry& geometry) {
+  std::vector<bool> is_near(geometry.scan.n_vertices(), false);
+  for (size_t v = 0; v < is_vertex_near.size(); ++v) {
+    const int cleaned = region.patch.whole_of_vertex[v];
+    if (cleaned >= 0 && is_vertex_near[v]) is_near[cleaned] = true;
   }
   const SkinProjection projection(geometry.grid);
   for (int v = 0; v < geometry.scan.n_vertices(); ++v) {
     const int cleaned = region.cleaned_of_scan[v];
-    if (cleaned < 0 || !in_patch[cleaned]) continue;
+    if (cleaned < 0 || !is_near[cleaned]) continue;
     const SkinFoot foot = projection.project(geometry.scan.points.col(v));
     if (!(std::max(std::abs(foot.place.xi - 0.5), std::abs(foot.place.eta - 0.5)) <= 0.5)) continue;
-    if (foot.distance > kFarthestFromSkin) continue;
     geometry.riders.push_back({v, foot.place});
     geometry.max_rider_distance = std::max(geometry.max_rider_distance, foot.distance);
   }
@@ -139,13 +139,14 @@ absl::StatusOr<FaceGeometry> build_scan_region(const ScanRegionSpec& scan, const
   auto region = find_scan_region(scan, progress);
   if (!region.ok()) return region.status();
   if (const absl::Status go = report(progress, 0.6, "charting the skin"); !go.ok()) return go;
-  auto skin = chart_region(region->patch, spec.n_xi, spec.n_eta);
-  if (!skin.ok()) return skin.status();
-  const Eigen::Vector2d spacing = compute_mean_spacing(spec.n_xi, spec.n_eta, *skin);
-  smooth_over_grid(spec.n_xi, spec.n_eta, spacing, choose_smoothing_length(region->patch.mesh, spacing), *skin);
+  auto chart = chart_region(region->patch, spec.n_xi, spec.n_eta);
+  if (!chart.ok()) return chart.status();
+  Eigen::Matrix3Xd& skin = chart->points;
+  const Eigen::Vector2d spacing = compute_mean_spacing(spec.n_xi, spec.n_eta, skin);
+  smooth_over_grid(spec.n_xi, spec.n_eta, spacing, choose_smoothing_length(region->patch.mesh, spacing), skin);
 
   if (const absl::Status go = report(progress, 0.8, "extruding the layers"); !go.ok()) return go;
-  auto grid = extrude_layers(*skin, spec.n_xi, spec.n_eta, spec.layers);
+  auto grid = extrude_layers(skin, spec.n_xi, spec.n_eta, spec.layers);
   if (!grid.ok()) return grid.status();
   FaceGeometry geometry;
   geometry.grid = std::move(*grid);
@@ -155,7 +156,7 @@ absl::StatusOr<FaceGeometry> build_scan_region(const ScanRegionSpec& scan, const
   geometry.scan_remarks = region->remarks;
   geometry.skin_area = compute_skin_area(geometry.grid);
   if (const absl::Status go = report(progress, 0.9, "placing the scan on the skin"); !go.ok()) return go;
-  find_riders(*region, geometry);
+  find_riders(*region, chart->is_vertex_near, geometry);
   return geometry;
 }
 

@@ -60,10 +60,10 @@ struct FaceGeometrySpec {
   std::vector<LayerGeometry> layers;  ///< from the skin inwards
 };
 
-/// A vertex of the scan that lies in the region and rides on the skin of the model: it moves by the skin's displacement at its
-/// place in the chart, bilinear between the nodes of the skin.
+/// A vertex of the scan that lies in the region and rides on the skin of the model: it moves by the skin's displacement
+/// at its place in the chart, bilinear between the nodes of the skin.
 struct Rider {
-  int vertex = 0;   ///< index into FaceGeometry::scan
+  int vertex = 0;  ///< index into FaceGeometry::scan
   ChartPoint place;
 };
 
@@ -84,17 +84,17 @@ using Progress = std::function<bool(double fraction, const char* stage)>;
 
 /// Cleans the scan, cuts the region, charts it, resamples it and extrudes the layers inwards.
 ///
-/// The chart is a conformal (or harmonic) map of the patch; its grid is smooth and free of folds. Only the outer skin takes part:
-/// the mouth bag and other inner surfaces of a scan are found by casting rays and left out.
-/// Errors: INVALID_ARGUMENT with field violations (fields named as in lipofill.v1.ModelSpec: "n_xi", "layers[1].thickness_mm",
+/// The chart is a conformal (or harmonic) map of the patch; its grid is smooth and free of folds. Only the outer skin
+/// takes part: the mouth bag and other inner surfaces of a scan are found by casting rays and left out. Errors:
+/// INVALID_ARGUMENT with field violations (fields named as in lipofill.v1.ModelSpec: "n_xi", "layers[1].thickness_mm",
 /// "scan_region.corners[2]", "scan_region.landmarks_mm", values in the units of those names) for what the caller gave;
 /// FAILED_PRECONDITION where the scan cannot be made good, saying where (scan coordinates in mm) and why;
 /// CANCELLED. Nothing is thrown. Deterministic.
 /// Checked by tests/unit/geometry/.
 absl::StatusOr<FaceGeometry> build_face_geometry(const FaceGeometrySpec& spec, const Progress& progress);
 
-/// The chart place of a skin point. INVALID_ARGUMENT (field violation "") when it names an unknown landmark, lies more than 10 mm from
-/// the outer skin, or is outside the region by more than 1e-6.
+/// The chart place of a skin point. INVALID_ARGUMENT (field violation "") when it names an unknown landmark, lies more
+/// than 10 mm from the outer skin, or is outside the region by more than 1e-6.
 absl::StatusOr<ChartPoint> locate_in_chart(const FaceGeometry& geometry, const SkinPoint& point);
 
 /// Position on the undeformed skin [m], bilinear between nodes.

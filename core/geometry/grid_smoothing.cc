@@ -27,7 +27,8 @@ struct BendingTerms {
   }
 };
 
-Eigen::SparseMatrix<double> assemble_identity_plus_bending(int n_xi, int n_eta, const Eigen::Vector2d& spacing, double length) {
+Eigen::SparseMatrix<double> assemble_identity_plus_bending(int n_xi, int n_eta, const Eigen::Vector2d& spacing,
+                                                           double length) {
   BendingTerms terms{n_xi, n_eta, {}};
   const double along_xi = std::pow(length / spacing.x(), 4);
   const double along_eta = std::pow(length / spacing.y(), 4);

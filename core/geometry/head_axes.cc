@@ -1,7 +1,6 @@
 #include "core/geometry/head_axes.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -25,8 +24,8 @@ std::optional<Eigen::Vector3d> sum_of_left_minus_right(const Landmarks& landmark
   return sum;
 }
 
-/// A line up the midline of the face, and how far it leans forward of the head's up [rad]: mean of two scans whose axes are known
-/// (menton 1.0 and 4.6 degrees, pogonion -3.8 and -3.4 degrees).
+/// A line up the midline of the face, and how far it leans forward of the head's up [rad]: mean of two scans whose axes
+/// are known (menton 1.0 and 4.6 degrees, pogonion -3.8 and -3.4 degrees).
 struct Profile {
   Eigen::Vector3d chin_to_nasion;
   double forward_lean = 0.0;
@@ -48,7 +47,8 @@ absl::StatusOr<HeadAxes> estimate_head_axes(const Landmarks& landmarks) {
   const auto across = sum_of_left_minus_right(landmarks);
   if (!across) {
     return absl::FailedPreconditionError(
-        "head axes need a pair of landmarks on both sides, apart from each other: exocanthion, cheilion, gonion, zygion or "
+        "head axes need a pair of landmarks on both sides, apart from each other: exocanthion, cheilion, gonion, "
+        "zygion or "
         "tragion with _left and _right; none is there");
   }
   const auto profile = find_profile(landmarks);

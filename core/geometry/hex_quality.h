@@ -6,9 +6,10 @@
 
 namespace lipofill::geometry {
 
-/// Scaled Jacobian of a hexahedron: the smallest over its eight corners of the determinant of the unit vectors along the three edges
-/// there. In [-1, 1]; 1 is a cuboid, not positive is folded.
-/// @param x  (3, 8) corners in the order of solid::HexMesh: deep face 0-3, outer face 4-7, anticlockwise seen from outside
+/// Scaled Jacobian of a hexahedron: the smallest over its eight corners of the determinant of the unit vectors along
+/// the three edges there. In [-1, 1]; 1 is a cuboid, not positive is folded.
+/// @param x  (3, 8) corners in the order of solid::HexMesh: deep face 0-3, outer face 4-7, anticlockwise seen from
+/// outside
 double compute_scaled_jacobian(const Eigen::Matrix<double, 3, 8>& x);
 
 /// The worst hexahedron of a grid.

@@ -14,9 +14,10 @@ namespace lipofill::geometry {
 struct LayeredGrid {
   int n_xi = 0;
   int n_eta = 0;
-  std::vector<int> elements_through;  ///< a number a layer, from the skin inwards; may be empty: then only level 0 exists
-  Eigen::Matrix3Xd nodes;             ///< [m]  (3, n_levels * nodes_per_level)
-  double min_scaled_jacobian = 1.0;   ///< worst over all hexahedra
+  std::vector<int>
+      elements_through;    ///< a number a layer, from the skin inwards; may be empty: then only level 0 exists
+  Eigen::Matrix3Xd nodes;  ///< [m]  (3, n_levels * nodes_per_level)
+  double min_scaled_jacobian = 1.0;  ///< worst over all hexahedra
 
   int n_layers() const { return static_cast<int>(elements_through.size()); }
   int nodes_per_level() const { return (n_xi + 1) * (n_eta + 1); }

@@ -1,4 +1,5 @@
-// Wavefront OBJ: the statements that shape a surface (v, f) are parsed here to the last byte, the others are known and passed over.
+// Wavefront OBJ: the statements that shape a surface (v, f) are parsed here to the last byte, the others are known and
+// passed over.
 
 #include <algorithm>
 #include <array>
@@ -12,10 +13,12 @@ namespace lipofill::geometry {
 namespace {
 
 constexpr std::array<std::string_view, 22> kPassedOver = {
-    "vt", "vn", "vp", "g", "o", "s", "l", "p", "mg", "mtllib", "usemtl", "maplib", "usemap", "bevel",
-    "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "vw", "param", "deg"};
+    "vt",     "vn",     "vp",    "g",        "o",        "s",   "l",          "p",         "mg", "mtllib", "usemtl",
+    "maplib", "usemap", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "vw", "param",  "deg"};
 
-std::string at_line(size_t line_number) { return absl::StrCat("line ", line_number); }
+std::string at_line(size_t line_number) {
+  return absl::StrCat("line ", line_number);
+}
 
 absl::Status parse_vertex(std::string_view line, size_t line_number, SurfaceBuilder& builder) {
   std::array<double, 3> xyz{};
@@ -31,10 +34,14 @@ absl::Status parse_vertex(std::string_view line, size_t line_number, SurfaceBuil
   return builder.add_vertex(xyz, at_line(line_number));
 }
 
-/// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0. Negative indices count back from the last vertex.
+/// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0. Negative indices count back from the last
+/// vertex.
 absl::StatusOr<long long> parse_corner(std::string_view word, size_t line_number, long long n_vertices) {
   const auto index = parse_integer(word.substr(0, word.find('/')));
-  const long long vertex = !index ? -1 : *index > 0 ? *index - 1 : *index < 0 && *index >= -n_vertices ? n_vertices + *index : -1;
+  const long long vertex = !index                                ? -1
+                           : *index > 0                          ? *index - 1
+                           : *index < 0 && *index >= -n_vertices ? n_vertices + *index
+                                                                 : -1;
   if (vertex < 0) {
     return absl::InvalidArgumentError(absl::StrCat(at_line(line_number), ": face corner ", quote(word),
                                                    " does not name a vertex, must be in [1, ", n_vertices,

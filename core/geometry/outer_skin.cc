@@ -13,7 +13,6 @@ constexpr int kRays = 13;
 constexpr int kFreeRaysOfSkin = 4;
 constexpr double kLargestIsland = 1e-4;  // [m2]
 constexpr double kRayStart = 2e-5;       // [m] above the surface, so that a ray does not meet its own triangle
-constexpr double kLongest = 10.0;        // [m] more than any scan is across
 
 /// The normal and two rings of six around it, 30 and 60 degrees off.
 std::array<Eigen::Vector3d, kRays> make_ray_directions(const Eigen::Vector3d& normal) {
@@ -30,14 +29,15 @@ std::array<Eigen::Vector3d, kRays> make_ray_directions(const Eigen::Vector3d& no
 }
 
 /// Number of free rays; where `enough` is given, counted no further than needed to know whether it is reached.
-int count_free_rays(const SurfaceLocator& locator, const Eigen::Vector3d& position, const Eigen::Vector3d& normal, int enough = 0) {
+int count_free_rays(const RayTree& rays, const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
+                    int enough = 0) {
   const Eigen::Vector3d start = position + kRayStart * normal;
   int free_rays = 0;
   int left = kRays;
   for (const Eigen::Vector3d& direction : make_ray_directions(normal)) {
     if (enough > 0 && (free_rays >= enough || free_rays + left < enough)) break;
     --left;
-    if (!locator.is_blocked(start, start + kLongest * direction)) ++free_rays;
+    if (!rays.is_blocked(start, direction)) ++free_rays;
   }
   return free_rays;
 }
@@ -74,7 +74,7 @@ void take_in_islands(const SurfaceMesh& mesh, const Across& across, const std::v
 
 }  // namespace
 
-std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across, const SurfaceLocator& locator,
+std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across, const RayTree& rays,
                                   const std::vector<int>& candidates) {
   std::vector<bool> outer(mesh.triangles.size(), false);
   std::vector<bool> is_candidate(mesh.triangles.size(), false);
@@ -82,13 +82,13 @@ std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across,
     is_candidate[t] = true;
     const Eigen::Vector3d normal = compute_area_vector(mesh, mesh.triangles[t]).normalized();
     const Eigen::Vector3d centre = compute_centre(mesh, mesh.triangles[t]);
-    outer[t] = count_free_rays(locator, centre, normal, kFreeRaysOfSkin) >= kFreeRaysOfSkin;
+    outer[t] = count_free_rays(rays, centre, normal, kFreeRaysOfSkin) >= kFreeRaysOfSkin;
   }
   take_in_islands(mesh, across, is_candidate, outer);
   return outer;
 }
 
-bool is_inside_out(const SurfaceMesh& mesh, const SurfaceLocator& locator) {
+bool is_inside_out(const SurfaceMesh& mesh, const RayTree& rays) {
   constexpr int kSamples = 300;
   const int stride = std::max(1, mesh.n_triangles() / kSamples);
   int free_in_front = 0;
@@ -96,8 +96,8 @@ bool is_inside_out(const SurfaceMesh& mesh, const SurfaceLocator& locator) {
   for (int t = 0; t < mesh.n_triangles(); t += stride) {
     const Eigen::Vector3d normal = compute_area_vector(mesh, mesh.triangles[t]).normalized();
     const Eigen::Vector3d centre = compute_centre(mesh, mesh.triangles[t]);
-    free_in_front += count_free_rays(locator, centre, normal);
-    free_behind += count_free_rays(locator, centre, -normal);
+    free_in_front += count_free_rays(rays, centre, normal);
+    free_behind += count_free_rays(rays, centre, -normal);
   }
   return free_behind > free_in_front;
 }

@@ -2,21 +2,23 @@
 
 #include <vector>
 
-#include "core/geometry/surface_locator.h"
+#include "core/geometry/ray_tree.h"
 #include "core/geometry/surface_mesh.h"
 #include "core/geometry/surface_topology.h"
 
 namespace lipofill::geometry {
 
-/// Which of the `candidates` (triangles) belong to the outer skin: those from which enough of 13 rays within 60 degrees of the
-/// outward normal leave the scan without meeting it again. The walls of a mouth bag, of a nostril or of a second shell under the skin
-/// look at each other and fail. Hidden islands of less than 1 cm2 in the middle of outer skin (the bottom of a crease) count as skin.
+/// Which of the `candidates` (triangles) belong to the outer skin: those from which enough of 13 rays within 60 degrees
+/// of the outward normal leave the scan without meeting it again. The walls of a mouth bag, of a nostril or of a second
+/// shell under the skin look at each other and fail. Hidden islands of less than 1 cm2 in the middle of outer skin (the
+/// bottom of a crease) count as skin.
 /// @return a flag a triangle of the mesh; false for all that are no candidates
 /// Checked by tests/unit/geometry/outer_skin_test.cc.
-std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across, const SurfaceLocator& locator,
+std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across, const RayTree& rays,
                                   const std::vector<int>& candidates);
 
-/// Whether the surface is turned inside out: rays leave more freely from the backs of its triangles than from their fronts.
-bool is_inside_out(const SurfaceMesh& mesh, const SurfaceLocator& locator);
+/// Whether the surface is turned inside out: rays leave more freely from the backs of its triangles than from their
+/// fronts.
+bool is_inside_out(const SurfaceMesh& mesh, const RayTree& rays);
 
 }  // namespace lipofill::geometry

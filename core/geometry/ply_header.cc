@@ -20,21 +20,21 @@ absl::Status error_at(size_t line, std::string_view what) {
 
 std::optional<PlyType> parse_type(std::string_view word) {
   constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{{"char", PlyType::kInt8},
-                                                                           {"int8", PlyType::kInt8},
-                                                                           {"uchar", PlyType::kUint8},
-                                                                           {"uint8", PlyType::kUint8},
-                                                                           {"short", PlyType::kInt16},
-                                                                           {"int16", PlyType::kInt16},
-                                                                           {"ushort", PlyType::kUint16},
-                                                                           {"uint16", PlyType::kUint16},
-                                                                           {"int", PlyType::kInt32},
-                                                                           {"int32", PlyType::kInt32},
-                                                                           {"uint", PlyType::kUint32},
-                                                                           {"uint32", PlyType::kUint32},
-                                                                           {"float", PlyType::kFloat32},
-                                                                           {"float32", PlyType::kFloat32},
-                                                                           {"double", PlyType::kFloat64},
-                                                                           {"float64", PlyType::kFloat64}}};
+                                                                            {"int8", PlyType::kInt8},
+                                                                            {"uchar", PlyType::kUint8},
+                                                                            {"uint8", PlyType::kUint8},
+                                                                            {"short", PlyType::kInt16},
+                                                                            {"int16", PlyType::kInt16},
+                                                                            {"ushort", PlyType::kUint16},
+                                                                            {"uint16", PlyType::kUint16},
+                                                                            {"int", PlyType::kInt32},
+                                                                            {"int32", PlyType::kInt32},
+                                                                            {"uint", PlyType::kUint32},
+                                                                            {"uint32", PlyType::kUint32},
+                                                                            {"float", PlyType::kFloat32},
+                                                                            {"float32", PlyType::kFloat32},
+                                                                            {"double", PlyType::kFloat64},
+                                                                            {"float64", PlyType::kFloat64}}};
   for (const auto& [name, type] : kTypes) {
     if (name == word) return type;
   }
@@ -50,7 +50,8 @@ absl::Status parse_format(std::string_view rest, size_t line, PlyHeader& header)
   } else if (word == "binary_big_endian") {
     header.encoding = PlyEncoding::kBigEndian;
   } else {
-    return error_at(line, absl::StrCat("format ", quote(word), " is not ascii, binary_little_endian or binary_big_endian"));
+    return error_at(line,
+                    absl::StrCat("format ", quote(word), " is not ascii, binary_little_endian or binary_big_endian"));
   }
   const std::string_view version = take_word(rest);
   if (version != "1.0") return error_at(line, absl::StrCat("version ", quote(version), ", must be 1.0"));
@@ -63,7 +64,8 @@ absl::Status parse_element(std::string_view rest, size_t line, PlyHeader& header
   const std::string_view word = take_word(rest);
   const auto count = parse_integer(word);
   if (!count || *count < 0) {
-    return error_at(line, absl::StrCat("count ", quote(word), " of element ", quote(element.name), " is not a number of 0 or more"));
+    return error_at(line, absl::StrCat("count ", quote(word), " of element ", quote(element.name),
+                                       " is not a number of 0 or more"));
   }
   if (header.elements.size() >= kMaxElements) return error_at(line, "more than 64 elements");
   element.count = static_cast<unsigned long long>(*count);

@@ -45,7 +45,8 @@ class PlyBody {
     std::string_view rest = bytes_.substr(offset_);
     word_ = take_word(rest);
     const size_t word_start = static_cast<size_t>(word_.data() - bytes_.data());
-    if (!word_.empty()) line_ += static_cast<size_t>(std::count(bytes_.begin() + offset_, bytes_.begin() + word_start, '\n'));
+    if (!word_.empty())
+      line_ += static_cast<size_t>(std::count(bytes_.begin() + offset_, bytes_.begin() + word_start, '\n'));
     offset_ = bytes_.size() - rest.size();
     return parse_number(word_);
   }
@@ -98,7 +99,8 @@ absl::Status failure(const PlyBody& body, const PlyElement& element) {
   return absl::InvalidArgumentError(message);
 }
 
-/// Reads one record: `scalars` takes the value of each scalar property, `list` the items of the list property `list_index`.
+/// Reads one record: `scalars` takes the value of each scalar property, `list` the items of the list property
+/// `list_index`.
 absl::Status read_record(PlyBody& body, const PlyElement& element, int list_index, std::vector<double>& scalars,
                          std::vector<double>& list) {
   for (size_t k = 0; k < element.properties.size(); ++k) {
@@ -112,8 +114,9 @@ absl::Status read_record(PlyBody& body, const PlyElement& element, int list_inde
     const auto count = body.next(property.count_type);
     if (!count) return failure(body, element);
     if (*count < 0 || *count != std::floor(*count) || *count > static_cast<double>(body.bytes_left())) {
-      return absl::InvalidArgumentError(absl::StrCat(body.where(), ": a list of ", *count, " items in element ", quote(element.name),
-                                                     ", must be in [0, ", body.bytes_left(), "], the bytes left"));
+      return absl::InvalidArgumentError(absl::StrCat(body.where(), ": a list of ", *count, " items in element ",
+                                                     quote(element.name), ", must be in [0, ", body.bytes_left(),
+                                                     "], the bytes left"));
     }
     if (static_cast<int>(k) == list_index) list.clear();
     for (double item = 0; item < *count; ++item) {

@@ -13,9 +13,9 @@ namespace lipofill::geometry {
 namespace {
 
 constexpr double kUnreached = std::numeric_limits<double>::infinity();
-constexpr double kSpare = 1.25;           // of the corners' own sum of distances; distances along edges are up to 1.2 too long
-constexpr double kSpareLength = 0.005;    // [m] a corner
-constexpr double kLargestFill = 0.015;    // [m] across
+constexpr double kSpare = 1.25;  // of the corners' own sum of distances; distances along edges are up to 1.2 too long
+constexpr double kSpareLength = 0.005;  // [m] a corner
+constexpr double kLargestFill = 0.015;  // [m] across
 constexpr int kMaxPatchVertices = 300'000;
 
 /// The vertices beside each vertex, as ranges of one array.
@@ -40,7 +40,8 @@ VertexGraph make_vertex_graph(const SurfaceMesh& mesh) {
 }
 
 /// Distances along edges from a point in a triangle to all vertices (Dijkstra).
-std::vector<double> compute_edge_distances(const SurfaceMesh& mesh, const VertexGraph& graph, const SurfacePoint& source) {
+std::vector<double> compute_edge_distances(const SurfaceMesh& mesh, const VertexGraph& graph,
+                                           const SurfacePoint& source) {
   std::vector<double> distance(mesh.n_vertices(), kUnreached);
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
@@ -82,7 +83,8 @@ std::vector<double> add_up_distances(const SurfaceMesh& skin, const std::array<S
 }
 
 absl::Status check_joined(const std::array<double, 4>& at_corner) {
-  if (std::all_of(at_corner.begin(), at_corner.end(), [](double d) { return std::isfinite(d); })) return absl::OkStatus();
+  if (std::all_of(at_corner.begin(), at_corner.end(), [](double d) { return std::isfinite(d); }))
+    return absl::OkStatus();
   return field_violation("scan_region.corners",
                          "lie on pieces of outer skin that do not hang together; all four must be on one");
 }
@@ -178,13 +180,14 @@ absl::StatusOr<RegionPatch> cut_region_patch(const SurfaceMesh& skin, const std:
   SubSurface part = extract_triangles(skin, select_triangles(skin, sum, bound, corners[0].triangle));
   if (part.mesh.n_vertices() > kMaxPatchVertices) {
     return absl::FailedPreconditionError(absl::StrCat("the scan has ", part.mesh.n_vertices(),
-                                                      " vertices around the region, must have at most ", kMaxPatchVertices,
-                                                      ": decimate it first"));
+                                                      " vertices around the region, must have at most ",
+                                                      kMaxPatchVertices, ": decimate it first"));
   }
   RegionPatch patch;
   patch.corners = corners;
   for (size_t k = 0; k < corners.size(); ++k) {
-    const auto found = std::lower_bound(part.whole_of_triangle.begin(), part.whole_of_triangle.end(), corners[k].triangle);
+    const auto found =
+        std::lower_bound(part.whole_of_triangle.begin(), part.whole_of_triangle.end(), corners[k].triangle);
     if (found == part.whole_of_triangle.end() || *found != corners[k].triangle) {
       return field_violation(absl::StrCat("scan_region.corners[", k, "]"),
                              "hangs together with the first corner only outside the region");

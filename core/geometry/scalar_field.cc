@@ -37,9 +37,13 @@ double ScalarField::at(double xi, double eta) const {
   return (1.0 - b.fraction) * row(b.first) + b.fraction * row(b.second);
 }
 
-double ScalarField::minimum() const { return *std::min_element(values.begin(), values.end()); }
+double ScalarField::minimum() const {
+  return *std::min_element(values.begin(), values.end());
+}
 
-double ScalarField::maximum() const { return *std::max_element(values.begin(), values.end()); }
+double ScalarField::maximum() const {
+  return *std::max_element(values.begin(), values.end());
+}
 
 absl::Status ScalarField::validate() const {
   FieldViolations violations;

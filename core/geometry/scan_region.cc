@@ -47,8 +47,8 @@ absl::Status check_landmarks(const Landmarks& landmarks, const SurfaceLocator& l
     }
     const double distance = locator.find_nearest(position).distance;
     if (distance <= kFarthestFromSkin) continue;
-    violations.add(field, absl::StrFormat("lies %.1f mm from the surface of the scan, must be at most %.0f mm", distance * 1e3,
-                                          kFarthestFromSkin * 1e3));
+    violations.add(field, absl::StrFormat("lies %.1f mm from the surface of the scan, must be at most %.0f mm",
+                                          distance * 1e3, kFarthestFromSkin * 1e3));
   }
   return violations.to_status();
 }
@@ -96,8 +96,9 @@ absl::Status check_sides(const std::array<Eigen::Vector3d, 4>& corners) {
   for (size_t k = 0; k < 4; ++k) {
     const double side = (corners[(k + 1) % 4] - corners[k]).norm();
     if (side >= kShortestSide && side <= kLongestSide) continue;
-    violations.add("scan_region.corners", absl::StrFormat("make a side of %.1f mm from corner %d to %d, must be in [%.0f, %.0f] mm",
-                                                          side * 1e3, k, (k + 1) % 4, kShortestSide * 1e3, kLongestSide * 1e3));
+    violations.add("scan_region.corners",
+                   absl::StrFormat("make a side of %.1f mm from corner %d to %d, must be in [%.0f, %.0f] mm",
+                                   side * 1e3, k, (k + 1) % 4, kShortestSide * 1e3, kLongestSide * 1e3));
   }
   return violations.to_status();
 }
@@ -121,14 +122,17 @@ std::vector<int> find_candidates(const SurfaceMesh& mesh, const std::array<Eigen
 std::string explain_off_skin(double to_skin, double to_scan) {
   if (to_scan <= kFarthestFromSkin) {
     return absl::StrFormat(
-        "lies on an inner surface of the scan, %.1f mm from the outer skin; must be at most %.0f mm from the outer skin",
+        "lies on an inner surface of the scan, %.1f mm from the outer skin; must be at most %.0f mm from the outer "
+        "skin",
         to_skin * 1e3, kFarthestFromSkin * 1e3);
   }
-  return absl::StrFormat("lies %.1f mm from the outer skin, must be at most %.0f mm", to_skin * 1e3, kFarthestFromSkin * 1e3);
+  return absl::StrFormat("lies %.1f mm from the outer skin, must be at most %.0f mm", to_skin * 1e3,
+                         kFarthestFromSkin * 1e3);
 }
 
 /// Corners brought onto the outer skin.
-absl::StatusOr<std::array<SurfacePoint, 4>> project_corners(const SurfaceMesh& skin, const SurfaceLocator& whole_locator,
+absl::StatusOr<std::array<SurfacePoint, 4>> project_corners(const SurfaceMesh& skin,
+                                                            const SurfaceLocator& whole_locator,
                                                             const std::array<Eigen::Vector3d, 4>& positions) {
   const SurfaceLocator locator(skin);
   std::array<SurfacePoint, 4> corners;
@@ -144,17 +148,17 @@ absl::StatusOr<std::array<SurfacePoint, 4>> project_corners(const SurfaceMesh& s
   return corners;
 }
 
-void turn_right_side_out(SurfaceMesh& mesh, std::vector<std::string>& remarks, const SurfaceLocator& locator) {
-  if (!is_inside_out(mesh, locator)) return;
+void turn_right_side_out(SurfaceMesh& mesh, std::vector<std::string>& remarks, const RayTree& rays) {
+  if (!is_inside_out(mesh, rays)) return;
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   remarks.push_back("The surface was inside out and has been turned.");
 }
 
 /// The triangles of outer skin near the corners as a surface of their own.
-absl::StatusOr<SubSurface> extract_outer_skin(const SurfaceMesh& mesh, const SurfaceLocator& locator,
+absl::StatusOr<SubSurface> extract_outer_skin(const SurfaceMesh& mesh, const RayTree& rays,
                                               const std::array<Eigen::Vector3d, 4>& corners) {
   const std::vector<int> candidates = find_candidates(mesh, corners);
-  const std::vector<bool> outer = find_outer_skin(mesh, find_neighbours(mesh).across, locator, candidates);
+  const std::vector<bool> outer = find_outer_skin(mesh, find_neighbours(mesh).across, rays, candidates);
   std::vector<int> skin;
   std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(skin), [&](int t) { return outer[t]; });
   if (skin.empty()) return field_violation("scan_region.corners", "have no outer skin of the scan near them");
@@ -170,7 +174,8 @@ absl::StatusOr<ScanRegion> find_scan_region(const ScanRegionSpec& spec, const Pr
   CleanedSurface cleaned = clean_surface(spec.scan);
   if (cleaned.mesh.triangles.empty()) return absl::FailedPreconditionError("cleaning leaves no triangle of the scan");
   const SurfaceLocator locator(cleaned.mesh);
-  turn_right_side_out(cleaned.mesh, cleaned.remarks, locator);
+  const RayTree rays(cleaned.mesh);
+  turn_right_side_out(cleaned.mesh, cleaned.remarks, rays);
 
   const absl::Status landmarks = check_landmarks(spec.landmarks, locator);
   if (!landmarks.ok()) return landmarks;
@@ -182,7 +187,7 @@ absl::StatusOr<ScanRegion> find_scan_region(const ScanRegionSpec& spec, const Pr
   if (!sides.ok()) return sides;
 
   if (const absl::Status go = report(progress, 0.2, "finding the outer skin"); !go.ok()) return go;
-  const auto skin = extract_outer_skin(cleaned.mesh, locator, *positions);
+  const auto skin = extract_outer_skin(cleaned.mesh, rays, *positions);
   if (!skin.ok()) return skin.status();
   const auto corners = project_corners(skin->mesh, locator, *positions);
   if (!corners.ok()) return corners.status();

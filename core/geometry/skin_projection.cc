@@ -35,7 +35,8 @@ CellPoint evaluate(const LayeredGrid& grid, const Cell& cell, double r, double s
   return point;
 }
 
-/// Local coordinates of the foot of a point in a cell continued bilinearly. Kept near the cell: far out, a bilinear cell turns over.
+/// Local coordinates of the foot of a point in a cell continued bilinearly. Kept near the cell: far out, a bilinear
+/// cell turns over.
 Eigen::Vector2d find_foot(const LayeredGrid& grid, const Cell& cell, const Eigen::Vector3d& point, Eigen::Vector2d rs) {
   constexpr int kMaxIterations = 20;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -125,7 +126,8 @@ absl::StatusOr<Eigen::Vector3d> resolve_landmark_point(const LandmarkPoint& poin
 
 }  // namespace
 
-absl::StatusOr<Eigen::Vector3d> resolve_position(const SkinPoint& point, const Landmarks& landmarks, const HeadAxes& axes) {
+absl::StatusOr<Eigen::Vector3d> resolve_position(const SkinPoint& point, const Landmarks& landmarks,
+                                                 const HeadAxes& axes) {
   if (std::holds_alternative<ChartPoint>(point)) {
     return field_violation("", "is a chart point, where only a position or landmarks make sense");
   }
@@ -151,14 +153,15 @@ absl::StatusOr<ChartPoint> locate_in_chart(const FaceGeometry& geometry, const S
     place = foot.place;
     const bool over_the_region = std::max(std::abs(place.xi - 0.5), std::abs(place.eta - 0.5)) <= 0.5 + kRimTolerance;
     if (over_the_region && foot.distance > kFarthestFromSkin) {
-      return field_violation("", absl::StrFormat("lies %.1f mm from the outer skin, must be at most %.0f mm", foot.distance * 1e3,
-                                                 kFarthestFromSkin * 1e3));
+      return field_violation("", absl::StrFormat("lies %.1f mm from the outer skin, must be at most %.0f mm",
+                                                 foot.distance * 1e3, kFarthestFromSkin * 1e3));
     }
   }
   for (double* coordinate : {&place.xi, &place.eta}) {
     if (!(*coordinate >= -kRimTolerance && *coordinate <= 1.0 + kRimTolerance)) {
-      return field_violation("", absl::StrFormat("lies outside the region, at (xi, eta) = (%.4f, %.4f), must be in [0, 1]", place.xi,
-                                                 place.eta));
+      return field_violation(
+          "", absl::StrFormat("lies outside the region, at (xi, eta) = (%.4f, %.4f), must be in [0, 1]", place.xi,
+                              place.eta));
     }
     *coordinate = std::clamp(*coordinate, 0.0, 1.0);
   }

@@ -1,4 +1,5 @@
-// STL, binary and text. The format repeats a vertex for every triangle; equal points become one vertex, in the order they first appear.
+// STL, binary and text. The format repeats a vertex for every triangle; equal points become one vertex, in the order
+// they first appear.
 
 #include <bit>
 #include <cmath>
@@ -53,7 +54,8 @@ double read_float_le(const char* bytes) {
 
 unsigned long long binary_triangle_count(std::string_view bytes) {
   unsigned long long count = 0;
-  for (size_t k = 0; k < 4; ++k) count |= static_cast<unsigned long long>(static_cast<unsigned char>(bytes[80 + k])) << (8 * k);
+  for (size_t k = 0; k < 4; ++k)
+    count |= static_cast<unsigned long long>(static_cast<unsigned char>(bytes[80 + k])) << (8 * k);
   return count;
 }
 
@@ -93,7 +95,8 @@ class StlText {
     const std::string_view word = next();
     if (word == expected) return absl::OkStatus();
     if (word.empty()) {
-      return absl::InvalidArgumentError(absl::StrCat(where(), ": the file ends where '", std::string(expected), "' is due"));
+      return absl::InvalidArgumentError(
+          absl::StrCat(where(), ": the file ends where '", std::string(expected), "' is due"));
     }
     return absl::InvalidArgumentError(
         absl::StrCat(where(), ": ", quote(word), " where '", std::string(expected), "' is due in an STL text"));
@@ -168,8 +171,9 @@ absl::StatusOr<SurfaceMesh> parse_stl(std::string_view bytes, const SurfaceLimit
     // Some binary files begin with "solid" too; their length gives them away.
     if (bytes.size() == promised) return parse_binary(bytes, limits);
     if (bytes.substr(0, 5) != "solid") {
-      return absl::InvalidArgumentError(absl::StrCat("the STL file promises ", binary_triangle_count(bytes), " triangles, that is ",
-                                                     promised, " bytes, but has ", bytes.size(), " bytes"));
+      return absl::InvalidArgumentError(absl::StrCat("the STL file promises ", binary_triangle_count(bytes),
+                                                     " triangles, that is ", promised, " bytes, but has ", bytes.size(),
+                                                     " bytes"));
     }
   }
   if (bytes.substr(0, 5) != "solid") {

@@ -23,12 +23,13 @@ absl::Status SurfaceBuilder::add_vertex(const std::array<double, 3>& xyz, const 
 
 absl::Status SurfaceBuilder::add_polygon(const std::vector<long long>& corners, const std::string& where) {
   if (corners.size() < 3) {
-    return absl::InvalidArgumentError(absl::StrCat(where, ": a face of ", corners.size(), " corners, must have 3 or more"));
+    return absl::InvalidArgumentError(
+        absl::StrCat(where, ": a face of ", corners.size(), " corners, must have 3 or more"));
   }
   for (const long long corner : corners) {
     if (corner < 0 || corner >= std::numeric_limits<int>::max()) {
-      return absl::InvalidArgumentError(absl::StrCat(where, ": a face names vertex ", corner, " counted from 0, must be in [0, ",
-                                                     n_vertices(), ")"));
+      return absl::InvalidArgumentError(
+          absl::StrCat(where, ": a face names vertex ", corner, " counted from 0, must be in [0, ", n_vertices(), ")"));
     }
   }
   if (triangles_.size() + corners.size() - 2 > static_cast<size_t>(limits_.max_triangles)) {

@@ -42,7 +42,8 @@ Quadrilateral place_corners(const RegionPatch& patch, const Eigen::Matrix2Xd& fl
   return quad;
 }
 
-bool segments_cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c, const Eigen::Vector2d& d) {
+bool segments_cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+                    const Eigen::Vector2d& d) {
   return compute_signed_area(a, b, c) * compute_signed_area(a, b, d) < 0.0 &&
          compute_signed_area(c, d, a) * compute_signed_area(c, d, b) < 0.0;
 }
@@ -59,10 +60,11 @@ absl::Status check_quadrilateral(const Quadrilateral& q) {
     const Eigen::Vector2d to_last = (q[(k + 3) % 4] - q[k]).normalized();
     const double sine = to_next.x() * to_last.y() - to_next.y() * to_last.x();
     if (sine >= kSharpestCornerSine) continue;
-    return field_violation(absl::StrFormat("%s[%d]", kCorners, k),
-                           absl::StrFormat("has an angle of %.0f degrees in the flattened skin, must be in [10, 170]: the "
-                                           "quadrilateral must be convex",
-                                           std::fmod(std::atan2(sine, to_next.dot(to_last)) * 57.29578 + 360.0, 360.0)));
+    return field_violation(
+        absl::StrFormat("%s[%d]", kCorners, k),
+        absl::StrFormat("has an angle of %.0f degrees in the flattened skin, must be in [10, 170]: the "
+                        "quadrilateral must be convex",
+                        std::fmod(std::atan2(sine, to_next.dot(to_last)) * 57.29578 + 360.0, 360.0)));
   }
   return absl::OkStatus();
 }
@@ -109,13 +111,10 @@ absl::StatusOr<FlatRegion> flatten(const RegionPatch& patch) {
                                        in_mm(patch.mesh.points.col(patch.mesh.triangles[fold][0])));
 }
 
-}  // namespace
-
-absl::StatusOr<Eigen::Matrix3Xd> chart_region(const RegionPatch& patch, int n_xi, int n_eta) {
-  const auto region = flatten(patch);
-  if (!region.ok()) return region.status();
-  const PlanarLocator locator(region->flat, patch.mesh.triangles);
-  const Quadrilateral& q = region->quad;
+/// The points of the bilinear grid of the quadrilateral, brought back to the surface.
+absl::StatusOr<Eigen::Matrix3Xd> sample_grid(const RegionPatch& patch, const FlatRegion& region, int n_xi, int n_eta) {
+  const PlanarLocator locator(region.flat, patch.mesh.triangles);
+  const Quadrilateral& q = region.quad;
   Eigen::Matrix3Xd points(3, (n_xi + 1) * (n_eta + 1));
   Eigen::Vector3d last = patch.corners[0].position;
   for (int j = 0; j <= n_eta; ++j) {
@@ -126,8 +125,8 @@ absl::StatusOr<Eigen::Matrix3Xd> chart_region(const RegionPatch& patch, int n_xi
       const PlanarLocator::Place place = locator.find(p);
       if (place.triangle < 0) {
         return absl::FailedPreconditionError(absl::StrFormat(
-            "the region runs over a border of the outer skin, or a hole wider than 15 mm, near %s (xi %.2f, eta %.2f)", in_mm(last),
-            xi, eta));
+            "the region runs over a border of the outer skin, or a hole wider than 15 mm, near %s (xi %.2f, eta %.2f)",
+            in_mm(last), xi, eta));
       }
       const auto& [a, b, c] = patch.mesh.triangles[place.triangle];
       last = place.barycentric[0] * patch.mesh.points.col(a) + place.barycentric[1] * patch.mesh.points.col(b) +
@@ -136,6 +135,27 @@ absl::StatusOr<Eigen::Matrix3Xd> chart_region(const RegionPatch& patch, int n_xi
     }
   }
   return points;
+}
+
+Quadrilateral enlarge(const Quadrilateral& quad, double factor) {
+  const Eigen::Vector2d centre = 0.25 * (quad[0] + quad[1] + quad[2] + quad[3]);
+  Quadrilateral larger;
+  for (size_t k = 0; k < 4; ++k) larger[k] = centre + factor * (quad[k] - centre);
+  return larger;
+}
+
+}  // namespace
+
+absl::StatusOr<RegionChart> chart_region(const RegionPatch& patch, int n_xi, int n_eta) {
+  const auto region = flatten(patch);
+  if (!region.ok()) return region.status();
+  auto points = sample_grid(patch, *region, n_xi, n_eta);
+  if (!points.ok()) return points.status();
+  const Quadrilateral around = enlarge(region->quad, 1.0 + 2.0 / std::min(n_xi, n_eta));
+  RegionChart chart{std::move(*points), {}};
+  for (int v = 0; v < patch.mesh.n_vertices(); ++v)
+    chart.is_vertex_near.push_back(contains(around, region->flat.col(v)));
+  return chart;
 }
 
 }  // namespace lipofill::geometry

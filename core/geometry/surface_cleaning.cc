@@ -78,7 +78,8 @@ void drop_bad_triangles(SurfaceMesh& mesh, std::vector<std::string>& remarks) {
   }
 }
 
-/// How well two triangles at an edge continue each other: the cosine between their planes, whichever way each is turned.
+/// How well two triangles at an edge continue each other: the cosine between their planes, whichever way each is
+/// turned.
 double smoothness_across(const SurfaceMesh& mesh, const EdgeUse& a, const EdgeUse& b) {
   const double turned = mesh.triangles[a.triangle][a.side] == mesh.triangles[b.triangle][b.side] ? -1.0 : 1.0;
   const Eigen::Vector3d na = compute_area_vector(mesh, mesh.triangles[a.triangle]).normalized();
@@ -126,7 +127,8 @@ void cut_non_manifold_edges(SurfaceMesh& mesh, std::vector<std::string>& remarks
     dropped += std::erase_if(mesh.triangles, [&](const auto&) { return surplus[t++]; });
   }
   if (edges > 0) {
-    remarks.push_back(absl::StrCat(counted(edges, "edge", "edges"), " of more than two triangles mended by leaving out ",
+    remarks.push_back(absl::StrCat(counted(edges, "edge", "edges"),
+                                   " of more than two triangles mended by leaving out ",
                                    counted(dropped, "triangle", "triangles"), "."));
   }
 }
@@ -139,8 +141,8 @@ void drop_specks(SurfaceMesh& mesh, std::vector<std::string>& remarks) {
     area[components.label[t]] += 0.5 * compute_area_vector(mesh, mesh.triangles[t]).norm();
   }
   const double smallest_kept = kSpeckShareOfLargest * *std::max_element(area.begin(), area.end());
-  const auto specks = static_cast<size_t>(
-      std::count_if(area.begin(), area.end(), [&](double a) { return a < smallest_kept; }));
+  const auto specks =
+      static_cast<size_t>(std::count_if(area.begin(), area.end(), [&](double a) { return a < smallest_kept; }));
   if (specks == 0) return;
   int t = 0;
   const size_t dropped =
@@ -186,7 +188,8 @@ void make_directions_agree(SurfaceMesh& mesh, std::vector<std::string>& remarks)
     if (turned[t] == 1) std::swap(mesh.triangles[t][1], mesh.triangles[t][2]), ++count;
   }
   if (count > 0) {
-    remarks.push_back(absl::StrCat(counted(count, "triangle", "triangles"), " turned to face the way of those around."));
+    remarks.push_back(
+        absl::StrCat(counted(count, "triangle", "triangles"), " turned to face the way of those around."));
   }
 }
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kOnEdge = 1e-7;  // of a barycentric coordinate
 
-/// Signs distances with the normal of the nearest face, edge or vertex, those of edges and vertices weighted by the angles
-/// around them: the sign is then right everywhere (Baerentzen & Aanaes 2005).
+/// Signs distances with the normal of the nearest face, edge or vertex, those of edges and vertices weighted by the
+/// angles around them: the sign is then right everywhere (Baerentzen & Aanaes 2005).
 class DistanceSigner {
  public:
   explicit DistanceSigner(const SurfaceMesh& surface)

@@ -29,8 +29,8 @@ struct PatchDistance {
   DistanceStatistics target_to_patch_statistics;
 };
 
-/// `patch`: the surface made of the patch alone. Checked by tests/unit/geometry/surface_distance_test.cc on concentric spheres and
-/// parallel planes.
+/// `patch`: the surface made of the patch alone. Checked by tests/unit/geometry/surface_distance_test.cc on concentric
+/// spheres and parallel planes.
 PatchDistance compute_patch_distance(const SurfaceMesh& patch, const SurfaceMesh& target);
 
 }  // namespace lipofill::geometry

@@ -39,6 +39,7 @@ void fill(vtkPolyData* surface, const SurfaceMesh& mesh) {
 
 SurfaceLocator::SurfaceLocator(const SurfaceMesh& mesh) : impl_(std::make_unique<Impl>()) {
   fill(impl_->surface, mesh);
+  impl_->locator->SetNumberOfCellsPerNode(1);
   impl_->locator->SetDataSet(impl_->surface);
   impl_->locator->BuildLocator();
 }
@@ -50,20 +51,11 @@ SurfacePoint SurfaceLocator::find_nearest(const Eigen::Vector3d& point) const {
   vtkIdType cell_id = -1;
   int sub_id = 0;
   double squared_distance = 0.0;
-  impl_->locator->FindClosestPoint(point.data(), nearest.position.data(), impl_->cell, cell_id, sub_id, squared_distance);
+  impl_->locator->FindClosestPoint(point.data(), nearest.position.data(), impl_->cell, cell_id, sub_id,
+                                   squared_distance);
   nearest.triangle = static_cast<int>(cell_id);
   nearest.distance = std::sqrt(squared_distance);
   return nearest;
-}
-
-bool SurfaceLocator::is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const {
-  double t = 0.0;
-  double hit[3];
-  double parametric[3];
-  int sub_id = 0;
-  vtkIdType cell_id = -1;
-  return impl_->locator->IntersectWithLine(from.data(), to.data(), 0.0, t, hit, parametric, sub_id, cell_id, impl_->cell) !=
-         0;
 }
 
 Eigen::Vector3d compute_barycentric(const SurfaceMesh& mesh, int triangle, const Eigen::Vector3d& position) {

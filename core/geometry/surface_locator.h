@@ -13,7 +13,7 @@ struct SurfacePoint {
   double distance = 0.0;                               ///< from the point asked about [m]
 };
 
-/// Nearest points and rays on a surface, through VTK. The surface must have a triangle.
+/// Nearest points on a surface, through VTK. The surface must have a triangle.
 class SurfaceLocator {
  public:
   explicit SurfaceLocator(const SurfaceMesh& mesh);
@@ -22,9 +22,6 @@ class SurfaceLocator {
   SurfaceLocator& operator=(const SurfaceLocator&) = delete;
 
   SurfacePoint find_nearest(const Eigen::Vector3d& point) const;
-
-  /// Whether the straight line from one point to the other meets the surface.
-  bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
  private:
   struct Impl;

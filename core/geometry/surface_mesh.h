@@ -8,7 +8,7 @@ namespace lipofill::geometry {
 
 /// A triangulated surface in the scan's own frame, in metres. Vertices keep the order of the file they came from.
 struct SurfaceMesh {
-  Eigen::Matrix3Xd points;                   ///< [m]  (3, n_vertices)
+  Eigen::Matrix3Xd points;                    ///< [m]  (3, n_vertices)
   std::vector<std::array<int, 3>> triangles;  ///< anticlockwise seen from outside
 
   int n_vertices() const { return static_cast<int>(points.cols()); }

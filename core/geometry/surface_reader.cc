@@ -28,9 +28,10 @@ Eigen::Vector3d compute_extent(const SurfaceMesh& mesh) {
 absl::Status check_extent(const SurfaceMesh& mesh, double metres_per_unit, const SurfaceLimits& limits) {
   const double extent = compute_extent(mesh).maxCoeff();
   if (extent >= limits.min_extent_m && extent <= limits.max_extent_m) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("the surface is ", extent * 1e3, " mm across with ", metres_per_unit * 1e3,
-                                                 " mm a unit of the file, must be in [", limits.min_extent_m * 1e3, ", ",
-                                                 limits.max_extent_m * 1e3, "] mm: is the unit right?"));
+  return absl::InvalidArgumentError(absl::StrCat("the surface is ", extent * 1e3, " mm across with ",
+                                                 metres_per_unit * 1e3, " mm a unit of the file, must be in [",
+                                                 limits.min_extent_m * 1e3, ", ", limits.max_extent_m * 1e3,
+                                                 "] mm: is the unit right?"));
 }
 
 }  // namespace
@@ -42,7 +43,8 @@ absl::StatusOr<SurfaceMesh> read_surface(std::string_view bytes, SurfaceFormat f
   }
   if (bytes.empty()) return absl::InvalidArgumentError("the file is empty");
   if (bytes.size() > limits.max_bytes) {
-    return absl::InvalidArgumentError(absl::StrCat("the file has ", bytes.size(), " bytes, must be at most ", limits.max_bytes));
+    return absl::InvalidArgumentError(
+        absl::StrCat("the file has ", bytes.size(), " bytes, must be at most ", limits.max_bytes));
   }
   auto mesh = parse(bytes, format, limits);
   if (!mesh.ok()) return mesh.status();

@@ -76,8 +76,8 @@ int side_from(const std::array<int, 3>& triangle, int vertex) {
   return -1;
 }
 
-/// The border side that starts where side (t, k) ends, reached by turning round that vertex; -1 where the turn does not come to a
-/// border, as beside an edge of triangles that disagree on their direction.
+/// The border side that starts where side (t, k) ends, reached by turning round that vertex; -1 where the turn does not
+/// come to a border, as beside an edge of triangles that disagree on their direction.
 std::pair<int, int> next_border_side(const SurfaceMesh& mesh, const Across& across, int t, int k) {
   const int pivot = mesh.triangles[t][(k + 1) % 3];
   int side = (k + 1) % 3;
@@ -160,7 +160,8 @@ SubSurface extract_triangles(const SurfaceMesh& mesh, const std::vector<int>& tr
     part.whole_of_vertex.push_back(v);
   }
   part.mesh.points.resize(3, static_cast<Eigen::Index>(part.whole_of_vertex.size()));
-  for (size_t v = 0; v < part.whole_of_vertex.size(); ++v) part.mesh.points.col(v) = mesh.points.col(part.whole_of_vertex[v]);
+  for (size_t v = 0; v < part.whole_of_vertex.size(); ++v)
+    part.mesh.points.col(v) = mesh.points.col(part.whole_of_vertex[v]);
   part.mesh.triangles.reserve(triangles.size());
   for (const int t : triangles) {
     std::array<int, 3> corners = mesh.triangles[t];

@@ -36,8 +36,8 @@ struct Components {
 
 Components label_components(const Across& across);
 
-/// Closed chains of border edges, each as its vertices in the direction of the triangles beside it. At a vertex where several borders
-/// meet each border is followed round its own fan of triangles.
+/// Closed chains of border edges, each as its vertices in the direction of the triangles beside it. At a vertex where
+/// several borders meet each border is followed round its own fan of triangles.
 std::vector<std::vector<int>> trace_boundary_loops(const SurfaceMesh& mesh, const Across& across);
 
 /// Repeated corners, or an area that rounding could have made.

@@ -6,7 +6,9 @@
 namespace lipofill::geometry {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f'; }
+bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
 
 template <typename Number>
 std::optional<Number> parse_whole(std::string_view word) {
@@ -45,7 +47,9 @@ std::optional<double> parse_number(std::string_view word) {
   return value;
 }
 
-std::optional<long long> parse_integer(std::string_view word) { return parse_whole<long long>(word); }
+std::optional<long long> parse_integer(std::string_view word) {
+  return parse_whole<long long>(word);
+}
 
 std::string quote(std::string_view word) {
   constexpr size_t kLongest = 24;

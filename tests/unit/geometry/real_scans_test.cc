@@ -26,7 +26,9 @@ struct Face {
   const char* landmarks_key;
 };
 
-void PrintTo(const Face& face, std::ostream* out) { *out << face.name; }
+void PrintTo(const Face& face, std::ostream* out) {
+  *out << face.name;
+}
 
 std::string read_file(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -35,7 +37,9 @@ std::string read_file(const std::filesystem::path& path) {
   return text.str();
 }
 
-Eigen::Vector3d to_vector(const json& xyz) { return {xyz[0].get<double>(), xyz[1].get<double>(), xyz[2].get<double>()}; }
+Eigen::Vector3d to_vector(const json& xyz) {
+  return {xyz[0].get<double>(), xyz[1].get<double>(), xyz[2].get<double>()};
+}
 
 ScanRegionSpec make_region(const Face& face) {
   const std::filesystem::path folder = LIPOFILL_SHARED_DATA;
@@ -44,7 +48,8 @@ ScanRegionSpec make_region(const Face& face) {
   EXPECT_TRUE(scan.ok()) << scan.status();
   if (scan.ok()) region.scan = std::move(*scan);
   const json description = json::parse(read_file(folder / face.landmarks));
-  for (const auto& [name, xyz] : description[face.landmarks_key].items()) region.landmarks[name] = 1e-3 * to_vector(xyz);
+  for (const auto& [name, xyz] : description[face.landmarks_key].items())
+    region.landmarks[name] = 1e-3 * to_vector(xyz);
   if (description.contains("axes")) {
     const json& axes = description["axes"];
     region.axes = HeadAxes{to_vector(axes["left"]), to_vector(axes["up"]), to_vector(axes["forward"])};
@@ -66,7 +71,8 @@ double largest_turn_between_neighbours(const LayeredGrid& grid) {
   double smallest_cosine = 1.0;
   const auto normal = [&](int i, int j) {
     const Eigen::Vector3d a = grid.nodes.col(grid.node(0, i, j));
-    return Eigen::Vector3d((grid.nodes.col(grid.node(0, i + 1, j)) - a).cross(grid.nodes.col(grid.node(0, i, j + 1)) - a))
+    return Eigen::Vector3d(
+               (grid.nodes.col(grid.node(0, i + 1, j)) - a).cross(grid.nodes.col(grid.node(0, i, j + 1)) - a))
         .normalized();
   };
   for (int j = 0; j + 1 < grid.n_eta; ++j) {
@@ -87,8 +93,8 @@ TEST_P(RealScans, JawAngleRegionBuilds) {
   const auto geometry = build_face_geometry(spec, nullptr);
   ASSERT_TRUE(geometry.ok()) << geometry.status();
   const double turn = largest_turn_between_neighbours(geometry->grid);
-  std::printf("%s: scaled Jacobian %.3f, area %.1f cm2, %zu riders within %.2f mm, largest turn %.1f degrees\n", GetParam().name,
-              geometry->grid.min_scaled_jacobian, geometry->skin_area * 1e4, geometry->riders.size(),
+  std::printf("%s: scaled Jacobian %.3f, area %.1f cm2, %zu riders within %.2f mm, largest turn %.1f degrees\n",
+              GetParam().name, geometry->grid.min_scaled_jacobian, geometry->skin_area * 1e4, geometry->riders.size(),
               geometry->max_rider_distance * 1e3, turn);
   for (const std::string& remark : geometry->scan_remarks) std::printf("  %s\n", remark.c_str());
   EXPECT_GT(geometry->grid.min_scaled_jacobian, 0.3);
@@ -101,9 +107,10 @@ TEST_P(RealScans, JawAngleRegionBuilds) {
 
 INSTANTIATE_TEST_SUITE_P(Faces, RealScans,
                          ::testing::Values(Face{"lps_head", "lps_head.obj", "lps_head.landmarks.json", "landmarks"},
-                                           Face{"patient_before", "lps_patient_before.obj", "lps_patient.json", "landmarks_before"},
-                                           Face{"patient_target", "lps_patient_target.obj", "lps_patient_target.landmarks.json",
-                                                "landmarks"},
+                                           Face{"patient_before", "lps_patient_before.obj", "lps_patient.json",
+                                                "landmarks_before"},
+                                           Face{"patient_target", "lps_patient_target.obj",
+                                                "lps_patient_target.landmarks.json", "landmarks"},
                                            Face{"james", "james_face.obj", "james_face.landmarks.json", "landmarks"}),
                          [](const auto& test) { return std::string(test.param.name); });
 

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string_view>
+
+#include "core/base/field_violations.h"
 
 namespace lipofill::solid {
 
@@ -11,7 +14,15 @@ struct ElasticMaterial {
   double density = 0.0;         ///< rho [kg/m3]  > 0
 };
 
-/// Stress of a strain in Voigt order (xx, yy, zz, xy, yz, zx), shear strains as engineering strains: sigma = D epsilon.  [Pa]
+/// Adds a violation below `field` for each constant that is out of its bounds, not finite or not a number.
+void check_material(std::string_view field, const ElasticMaterial& material, FieldViolations& violations);
+
+/// Stress of a strain in Voigt order (xx, yy, zz, xy, yz, zx), shear strains as engineering strains: sigma = D epsilon.
+/// [Pa]
+///
+///     D = lambda 1 (x) 1 + 2 mu I,   lambda = E nu / ((1 + nu)(1 - 2 nu)),   mu = E / (2 (1 + nu))
+///
+/// Checked by tests/unit/solid/material_test.cc.
 Eigen::Matrix<double, 6, 6> compute_elasticity_matrix(const ElasticMaterial& material);
 
 }  // namespace lipofill::solid

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "core/solid/hex_shape.h"
+
+namespace lipofill::solid {
+
+/// Stiffness (24, 24) of the solid-shell hexahedron, for layers one element thick:
+///
+///   - the transverse shear strains 31 and 23 are taken at the mid-points of the edges of the mid-surface and
+///   interpolated linearly
+///     across, and the thickness strain 33 at the corners of the mid-surface (assumed natural strains: no shear or
+///     curvature thickness locking; Hauptmann & Schweizerhof 1998, Klinkel, Gruttmann & Wagner 1999);
+///   - seven enhanced modes, 11: xi, 22: eta, 33: zeta, xi zeta, eta zeta, 12: xi, eta (EAS-7: no membrane, thickness
+///   or volumetric
+///     locking).
+///
+/// Passes membrane and bending patch tests on meshes distorted in the plane. zeta is the thickness direction. [N/m]
+/// @param nodes       rest positions [m], positive Jacobian
+/// @param elasticity  D of compute_elasticity_matrix [Pa]
+/// Checked by tests/unit/solid/element_test.cc, tests/verification/solid/.
+HexStiffness compute_solid_shell_stiffness(const HexNodes& nodes, const Eigen::Matrix<double, 6, 6>& elasticity);
+
+}  // namespace lipofill::solid

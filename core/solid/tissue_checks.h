@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "absl/status/status.h"
+#include "core/solid/hex_mesh.h"
+#include "core/solid/material.h"
+#include "core/solid/tissue.h"
+
+namespace lipofill::solid {
+
+/// What Tissue::create refuses: INVALID_ARGUMENT with a violation for everything wrong, at most a few of each kind.
+/// Checked by tests/unit/solid/tissue_checks_test.cc.
+absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
+                          const NodeSupports& supports, const RayleighDamping& damping);
+
+}  // namespace lipofill::solid

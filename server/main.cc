@@ -1,0 +1,83 @@
+// lipofilld: opens the store, serves until SIGTERM or SIGINT, stops gracefully.
+
+#include <filesystem>
+#include <fstream>
+
+#include "server/ops/logging.h"
+#include "server/ops/options.h"
+#include "server/ops/signals.h"
+#include "server/rpc/grpc_server.h"
+#include "server/store/data_directory.h"
+#include "server/store/sqlite_store.h"
+#include "spdlog/spdlog.h"
+
+namespace lipofill::server {
+namespace {
+
+/// Brings the store in line after a run that did not end well.
+absl::Status recover(Store& store, const ScanFiles& files) {
+  const auto failed = store.fail_unended_simulations("the daemon stopped");
+  if (!failed.ok()) return failed.status();
+  if (*failed > 0) spdlog::warn("{} simulations were under way when the daemon stopped: they are FAILED", *failed);
+  const int swept = files.sweep([&store](const std::string& patient, const std::string& scan) {
+    return !absl::IsNotFound(store.get_scan(patient, scan).status());
+  });
+  if (swept > 0) spdlog::warn("{} files of scans that are in no record were removed", swept);
+  return absl::OkStatus();
+}
+
+/// Written beside and moved into place, so that a script never reads half a number.
+absl::Status write_port(const std::string& path, int port) {
+  const std::string draft = path + ".new";
+  std::ofstream(draft) << port << "\n";
+  std::error_code error;
+  std::filesystem::rename(draft, path, error);
+  return error ? absl::FailedPreconditionError("cannot write " + path + ": " + error.message()) : absl::OkStatus();
+}
+
+absl::Status serve(const Options& options) {
+  const auto data = DataDirectory::open(options.data);
+  if (!data.ok()) return data.status();
+  const auto store = SqliteStore::open(data->database().string());
+  if (!store.ok()) return store.status();
+  auto files = ScanFiles::open(data->scans());
+  if (!files.ok()) return files.status();
+  if (auto recovered = recover(**store, *files); !recovered.ok()) return recovered;
+
+  Backend backend({options.workers, options.max_simulations}, **store, *files);
+  const auto server = GrpcServer::start(options.listen, backend);
+  if (!server.ok()) return server.status();
+  if (!options.port_file.empty()) {
+    if (auto written = write_port(options.port_file, (*server)->port()); !written.ok()) {
+      (*server)->stop();
+      return written;
+    }
+  }
+  spdlog::info("lipofilld serves {} (port {}) with {} workers, data in {}", options.listen, (*server)->port(),
+               options.workers, options.data);
+  const int signal = wait_for_signal();
+  spdlog::info("signal {}: stopping", signal);
+  (*server)->stop();
+  spdlog::info("stopped");
+  return absl::OkStatus();
+}
+
+}  // namespace
+}  // namespace lipofill::server
+
+int main(int argc, char** argv) {
+  using namespace lipofill::server;
+  int exit_code = 0;
+  const auto options = parse_options(argc, argv, exit_code);
+  if (!options) return exit_code;
+  set_up_logging(options->log_level);
+  block_signals();
+  try {
+    const absl::Status served = serve(*options);
+    if (served.ok()) return 0;
+    spdlog::error("{}", std::string(served.message()));
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+  }
+  return 1;
+}

@@ -1,0 +1,60 @@
+#include "server/ops/options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <thread>
+
+namespace lipofill::server {
+namespace {
+
+constexpr char kDescription[] =
+    "lipofilld holds patient face models and simulates how injected fat spreads between tissue layers and lifts the "
+    "skin.\n"
+    "Clients (lipofill, planning GUIs, scripts) drive it over gRPC. A research and planning aid, not a medical device.";
+
+constexpr char kFooter[] =
+    "Examples:\n"
+    "  lipofilld --data ~/lipofill                       serve on 127.0.0.1:50061\n"
+    "  lipofilld --listen 127.0.0.1:0 --port-file port   take a free port and write it to the file, for scripts\n"
+    "  lipofilld --listen 0.0.0.0:50061                  serve the network; there is no encryption yet: trusted "
+    "networks only\n"
+    "\n"
+    "SIGTERM and SIGINT stop it gracefully: simulations end STOPPED and keep the state they reached.";
+
+}  // namespace
+
+std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
+  Options options;
+  options.workers = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  CLI::App app(kDescription, "lipofilld");
+  app.footer(kFooter);
+  app.set_version_flag("--version", std::string("lipofilld " LIPOFILL_VERSION));
+  app.add_option("--listen", options.listen, "Address and port to serve; port 0 takes a free one")
+      ->type_name("HOST:PORT")
+      ->capture_default_str();
+  app.add_option("--data", options.data, "Directory of the store: patients, scans, models, results; made when missing")
+      ->type_name("DIR")
+      ->capture_default_str();
+  app.add_option("--workers", options.workers, "Threads that run simulations; default: the number of cores")
+      ->type_name("N")
+      ->check(CLI::Range(1, 256));
+  app.add_option("--max-simulations", options.max_simulations, "Simulations that may exist without having ended")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error or off")
+      ->type_name("LEVEL")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
+      ->capture_default_str();
+  app.add_option("--port-file", options.port_file, "Write the port to this file once the daemon serves")
+      ->type_name("PATH");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    exit_code = app.exit(error) == 0 ? 0 : 2;
+    return std::nullopt;
+  }
+  return options;
+}
+
+}  // namespace lipofill::server

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace lipofill::server {
+
+/// What the command line says.
+struct Options {
+  std::string listen = "127.0.0.1:50061";
+  std::string data = "lipofill-data";
+  int workers = 1;
+  int max_simulations = 64;
+  std::string log_level = "info";
+  std::string port_file;
+};
+
+/// Reads the command line. Without a value the program ends with `exit_code`: after --help, --version (0) or a mistake
+/// (2).
+std::optional<Options> parse_options(int argc, char** argv, int& exit_code);
+
+}  // namespace lipofill::server

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "server/rpc/courier.h"
+#include "server/rpc/result_keeper.h"
+#include "server/sessions/model_cache.h"
+#include "server/sessions/operations.h"
+#include "server/sessions/session_manager.h"
+#include "server/sessions/task_pool.h"
+#include "server/sessions/worker_pool.h"
+#include "server/store/scan_files.h"
+#include "server/store/store.h"
+
+namespace lipofill::server {
+
+struct BackendOptions {
+  int workers = 1;
+  int max_simulations = 64;
+};
+
+/// What the services share.
+struct Backend {
+  Backend(const BackendOptions& options, Store& the_store, ScanFiles& files)
+      : store(the_store),
+        scan_files(files),
+        sessions(options.max_simulations),
+        keeper(the_store, sessions),
+        workers(options.workers) {}
+
+  Store& store;
+  ScanFiles& scan_files;
+  std::atomic<bool> stopping = false;
+  ModelCache models{8};
+  Operations operations;
+  SessionManager sessions;
+  ResultKeeper keeper;
+  Courier courier;
+  /// Last: their threads use the others.
+  WorkerPool workers;
+  TaskPool calls{2, 256};
+  TaskPool builds{2, 64};
+
+  /// The model of a record, from memory or built again from its specification and scan. DATA_LOSS when what is built is
+  /// not what the record says.
+  absl::StatusOr<ModelCache::Model> load_model(const std::string& name);
+};
+
+}  // namespace lipofill::server

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "lipofill/v1/frame_service.grpc.pb.h"
+#include "server/rpc/backend.h"
+#include "server/rpc/watch_stream.h"
+
+namespace lipofill::server {
+
+/// Meshes and fields, streamed. The raw callback method lets all viewers share one serialised slice.
+/// See proto/lipofill/v1/frame_service.proto.
+class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<v1::FrameService::Service> {
+ public:
+  explicit FrameService(Backend& backend) : backend_(backend) {}
+
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* Watch(grpc::CallbackServerContext* context,
+                                                    const grpc::ByteBuffer* request) override;
+
+ private:
+  absl::Status begin(const grpc::ByteBuffer& bytes, std::shared_ptr<WatchStream>& stream);
+  absl::Status watch_session(const v1::WatchRequest& request, const std::shared_ptr<Session>& session,
+                             const std::shared_ptr<WatchStream>& stream);
+  absl::Status watch_kept(const v1::WatchRequest& request, const std::string& id,
+                          const std::shared_ptr<WatchStream>& stream);
+
+  Backend& backend_;
+};
+
+}  // namespace lipofill::server

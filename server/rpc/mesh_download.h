@@ -1,0 +1,19 @@
+#pragma once
+
+#include <grpcpp/support/server_callback.h>
+
+#include "core/simulation/face_model.h"
+#include "lipofill/v1/patient_service.pb.h"
+#include "server/rpc/backend.h"
+#include "server/sessions/frame.h"
+
+namespace lipofill::server {
+
+/// The meshes of a model at rest: "skin" (quadrilaterals), "tissue" (hexahedra, not yet split by any film) and, where
+/// it has one, "scan".
+std::vector<simulation::MeshTopology> make_model_meshes(const simulation::FaceModel& model);
+
+grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend,
+                                                             const v1::DownloadModelMeshRequest& request);
+
+}  // namespace lipofill::server

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "core/simulation/face_model.h"
+#include "lipofill/v1/model.pb.h"
+#include "lipofill/v1/patient_service.pb.h"
+#include "server/rpc/backend.h"
+
+namespace lipofill::server {
+
+v1::Model to_model(const ModelRecord& record);
+
+/// A specification in SI, with its scan's surface read. Field violations relative to the message.
+absl::StatusOr<simulation::FaceModelSpec> read_model_spec(Backend& backend, const std::string& patient,
+                                                          const v1::ModelSpec& message);
+
+/// Starts the operation that builds a model, or finds the one an equal request started. What can be refused at once is.
+absl::StatusOr<OperationView> start_model_build(Backend& backend, const v1::BuildModelRequest& request);
+
+}  // namespace lipofill::server

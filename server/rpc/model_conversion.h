@@ -1,0 +1,14 @@
+#pragma once
+
+#include "absl/status/statusor.h"
+#include "core/simulation/face_model.h"
+#include "lipofill/v1/model.pb.h"
+
+namespace lipofill::server {
+
+/// A model's specification in SI, without the scan's surface: the caller puts that into ScanRegionSpec::scan.
+/// INVALID_ARGUMENT with the path of every field that is missing, relative to the message. Checked by
+/// tests/unit/server/conversion_test.cc.
+absl::StatusOr<simulation::FaceModelSpec> to_face_model_spec(const v1::ModelSpec& message);
+
+}  // namespace lipofill::server

@@ -1,0 +1,152 @@
+#include "server/rpc/report_conversion.h"
+
+#include <cmath>
+
+namespace lipofill::server {
+namespace {
+
+constexpr double kMillimetrePerMetre = 1e3;
+constexpr double kMillilitrePerCubicMetre = 1e6;
+constexpr double kMillisecondPerSecond = 1e3;
+
+/// Volume of the hexahedra of a grid [m3]: det(J) at 2 x 2 x 2 Gauss points, exact for trilinear shapes.
+double compute_tissue_volume(const geometry::LayeredGrid& grid) {
+  const double g = 1.0 / std::sqrt(3.0);
+  double volume = 0.0;
+  for (int level = 0; level + 1 < grid.n_levels(); ++level) {
+    for (int j = 0; j < grid.n_eta; ++j) {
+      for (int i = 0; i < grid.n_xi; ++i) {
+        const auto at = [&](int a, int b, int c) -> Eigen::Vector3d {
+          return grid.nodes.col(grid.node(level + c, i + a, j + b));
+        };
+        for (int q = 0; q < 8; ++q) {
+          const double xi = (q & 1) ? g : -g, eta = (q & 2) ? g : -g, zeta = (q & 4) ? g : -g;
+          Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
+          for (int n = 0; n < 8; ++n) {
+            const double a = (n & 1) ? 1 : -1, b = (n & 2) ? 1 : -1, c = (n & 4) ? 1 : -1;
+            const Eigen::Vector3d gradient(a * (1 + b * eta) * (1 + c * zeta), b * (1 + a * xi) * (1 + c * zeta),
+                                           c * (1 + a * xi) * (1 + b * eta));
+            jacobian += at(n & 1, (n >> 1) & 1, (n >> 2) & 1) * gradient.transpose() / 8.0;
+          }
+          volume += std::abs(jacobian.determinant());
+        }
+      }
+    }
+  }
+  return volume;
+}
+
+}  // namespace
+
+v1::ModelReport to_model_report(const simulation::FaceModel& model) {
+  const geometry::FaceGeometry& face = model.geometry;
+  v1::ModelReport report;
+  report.set_content_hash(model.content_hash);
+  report.set_hexahedra(static_cast<uint32_t>(face.grid.n_hexahedra()));
+  report.set_nodes(static_cast<uint32_t>(face.grid.nodes.cols()));
+  report.set_min_scaled_jacobian(face.grid.min_scaled_jacobian);
+  report.set_area_cm2(face.skin_area * 1e4);
+  report.set_tissue_volume_ml(compute_tissue_volume(face.grid) * kMillilitrePerCubicMetre);
+  report.set_scan_vertices_in_patch(static_cast<uint32_t>(face.riders.size()));
+  report.set_max_chart_deviation_mm(face.max_rider_distance * kMillimetrePerMetre);
+  for (const std::string& remark : face.scan_remarks) report.add_scan_remarks(remark);
+  return report;
+}
+
+v1::ScanReport to_scan_report(const geometry::SurfaceMesh& mesh, const geometry::SurfaceCheck& check) {
+  v1::ScanReport report;
+  report.set_vertices(static_cast<uint32_t>(mesh.n_vertices()));
+  report.set_triangles(static_cast<uint32_t>(mesh.n_triangles()));
+  report.set_components(static_cast<uint32_t>(check.components));
+  report.set_boundary_loops(static_cast<uint32_t>(check.boundary_loops));
+  report.set_non_manifold_edges(static_cast<uint32_t>(check.non_manifold_edges));
+  report.set_degenerate_triangles(static_cast<uint32_t>(check.degenerate_triangles));
+  report.set_size_x_mm(check.extent.x() * kMillimetrePerMetre);
+  report.set_size_y_mm(check.extent.y() * kMillimetrePerMetre);
+  report.set_size_z_mm(check.extent.z() * kMillimetrePerMetre);
+  return report;
+}
+
+v1::Summary to_summary(const SessionView& view) {
+  const simulation::StepReport& step = view.report;
+  v1::Summary summary;
+  summary.set_steps(step.step);
+  summary.set_time_s(step.time);
+  summary.set_wall_s(view.wall_s);
+  summary.set_step_ms_median(view.step_ms_median);
+  summary.set_hexahedra(static_cast<uint32_t>(view.n_hexahedra));
+  summary.set_film_cells(static_cast<uint32_t>(view.n_film_cells));
+  summary.set_dofs(static_cast<uint32_t>(view.n_dofs));
+  summary.set_injected_ml(step.injected * kMillilitrePerCubicMetre);
+  summary.set_film_volume_ml(step.film_volume * kMillilitrePerCubicMetre);
+  summary.set_gap_volume_ml(step.gap_volume * kMillilitrePerCubicMetre);
+  summary.set_film_volume_relative_error(step.film_volume_relative_error);
+  summary.set_gap_volume_relative_error(step.gap_volume_relative_error);
+  summary.set_max_pressure_pa(step.max_pressure);
+  summary.set_min_pressure_pa(step.min_pressure);
+  summary.set_mean_pressure_pa(step.mean_pressure);
+  summary.set_max_thickness_mm(step.max_thickness * kMillimetrePerMetre);
+  summary.set_skin_max_displacement_mm(step.skin_max_displacement * kMillimetrePerMetre);
+  summary.set_skin_volume_change_ml(step.skin_volume_change * kMillilitrePerCubicMetre);
+  summary.set_min_scaled_jacobian(step.min_scaled_jacobian);
+  summary.set_state_hash(view.state_hash);
+  for (const simulation::ZoneReport& report : view.zones) {
+    v1::ZoneSummary* zone = summary.add_zones();
+    zone->set_name(report.name);
+    zone->set_volume_ml(report.volume * kMillilitrePerCubicMetre);
+    zone->set_mean_pressure_pa(report.mean_pressure);
+    zone->set_max_thickness_mm(report.max_thickness * kMillimetrePerMetre);
+  }
+  return summary;
+}
+
+v1::SeriesRow to_series_row(const SeriesEntry& entry) {
+  const simulation::StepReport& step = entry.report;
+  v1::SeriesRow row;
+  row.set_step(step.step);
+  row.set_time_s(step.time);
+  row.set_step_ms(step.step_size * kMillisecondPerSecond);
+  row.set_injected_ml(step.injected * kMillilitrePerCubicMetre);
+  row.set_film_volume_ml(step.film_volume * kMillilitrePerCubicMetre);
+  row.set_gap_volume_ml(step.gap_volume * kMillilitrePerCubicMetre);
+  row.set_max_pressure_pa(step.max_pressure);
+  row.set_min_pressure_pa(step.min_pressure);
+  row.set_max_thickness_mm(step.max_thickness * kMillimetrePerMetre);
+  row.set_skin_max_displacement_mm(step.skin_max_displacement * kMillimetrePerMetre);
+  row.set_skin_speed_mm_per_s(step.skin_speed * kMillimetrePerMetre);
+  for (const double thickness : step.probe_thickness) row.add_probe_thickness_mm(thickness * kMillimetrePerMetre);
+  for (const double pressure : step.probe_pressure) row.add_probe_pressure_pa(pressure);
+  row.set_wall_ms(entry.wall_ms);
+  return row;
+}
+
+v1::DistanceStatistics to_distance_statistics(const geometry::DistanceStatistics& statistics) {
+  v1::DistanceStatistics message;
+  message.set_mean_mm(statistics.mean * kMillimetrePerMetre);
+  message.set_rms_mm(statistics.rms * kMillimetrePerMetre);
+  message.set_p95_mm(statistics.p95 * kMillimetrePerMetre);
+  message.set_max_mm(statistics.max * kMillimetrePerMetre);
+  return message;
+}
+
+v1::Simulation::State to_state(SimulationState state) {
+  switch (state) {
+    case SimulationState::kReady:
+      return v1::Simulation::READY;
+    case SimulationState::kRunning:
+      return v1::Simulation::RUNNING;
+    case SimulationState::kPaused:
+      return v1::Simulation::PAUSED;
+    case SimulationState::kSettled:
+      return v1::Simulation::SETTLED;
+    case SimulationState::kFinished:
+      return v1::Simulation::FINISHED;
+    case SimulationState::kStopped:
+      return v1::Simulation::STOPPED;
+    case SimulationState::kFailed:
+      return v1::Simulation::FAILED;
+  }
+  return v1::Simulation::STATE_UNSPECIFIED;
+}
+
+}  // namespace lipofill::server

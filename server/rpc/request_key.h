@@ -1,0 +1,15 @@
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include <string>
+
+#include "server/store/records.h"
+
+namespace lipofill::server {
+
+/// For the idempotency of a create: a request_id stands for one request, byte for byte, maps in order.
+RequestKey make_request_key(const std::string& method, const std::string& request_id,
+                            const google::protobuf::Message& request);
+
+}  // namespace lipofill::server

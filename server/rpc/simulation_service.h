@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "lipofill/v1/simulation_service.grpc.pb.h"
+#include "server/rpc/backend.h"
+
+namespace lipofill::server {
+
+/// Simulations. See proto/lipofill/v1/simulation_service.proto for what each call does.
+class SimulationService : public v1::SimulationService::CallbackService {
+ public:
+  explicit SimulationService(Backend& backend) : backend_(backend) {}
+
+  using Context = grpc::CallbackServerContext;
+  using Reactor = grpc::ServerUnaryReactor;
+
+  Reactor* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
+                            v1::Simulation* response) override;
+  Reactor* GetSimulation(Context* context, const v1::GetSimulationRequest* request, v1::Simulation* response) override;
+  Reactor* ListSimulations(Context* context, const v1::ListSimulationsRequest* request,
+                           v1::ListSimulationsResponse* response) override;
+  Reactor* StartSimulation(Context* context, const v1::StartSimulationRequest* request,
+                           v1::Simulation* response) override;
+  Reactor* PauseSimulation(Context* context, const v1::PauseSimulationRequest* request,
+                           v1::Simulation* response) override;
+  Reactor* ResumeSimulation(Context* context, const v1::ResumeSimulationRequest* request,
+                            v1::Simulation* response) override;
+  Reactor* StopSimulation(Context* context, const v1::StopSimulationRequest* request,
+                          v1::Simulation* response) override;
+  Reactor* DeleteSimulation(Context* context, const v1::DeleteSimulationRequest* request,
+                            google::protobuf::Empty* response) override;
+  Reactor* Inject(Context* context, const v1::InjectRequest* request, v1::Simulation* response) override;
+  Reactor* GetSeries(Context* context, const v1::GetSeriesRequest* request, v1::GetSeriesResponse* response) override;
+  Reactor* EvaluateSimulation(Context* context, const v1::EvaluateSimulationRequest* request,
+                              v1::Evaluation* response) override;
+
+ private:
+  using Act = std::function<void(Session& session, Session::Reply reply)>;
+  /// Has the session act and answers with the simulation as it is then; FAILED_PRECONDITION when it has ended.
+  template <typename Request>
+  Reactor* command(Context* context, const Request* request, v1::Simulation* response, const char* what,
+                   const Act& act);
+
+  Backend& backend_;
+};
+
+}  // namespace lipofill::server

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <grpcpp/server_context.h>
+#include <grpcpp/support/server_callback.h>
+
+#include <exception>
+#include <functional>
+#include <new>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "server/rpc/backend.h"
+#include "server/rpc/message_check.h"
+#include "server/rpc/status_mapping.h"
+
+namespace lipofill::server {
+
+/// Carries out `work`; whatever it throws becomes a status: nothing may leave the daemon's edge as an exception.
+template <typename Work>
+absl::Status guarded(Work&& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError("out of memory");
+  } catch (const std::exception& error) {
+    return absl::InternalError(error.what());
+  }
+}
+
+/// Answers a call at once. `work` fills the response and returns a status.
+template <typename Request, typename Work>
+grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, const Request* request, Work&& work) {
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  const absl::Status valid = check_message(*request);
+  reactor->Finish(to_grpc_status(valid.ok() ? guarded(work) : valid));
+  return reactor;
+}
+
+/// Answers a call from the pool for long calls.
+template <typename Request>
+grpc::ServerUnaryReactor* answer_later(grpc::CallbackServerContext* context, const Request* request, Backend& backend,
+                                       std::function<absl::Status()> work) {
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  if (const absl::Status valid = check_message(*request); !valid.ok()) {
+    reactor->Finish(to_grpc_status(valid));
+    return reactor;
+  }
+  const bool taken =
+      backend.calls.run([reactor, work = std::move(work)] { reactor->Finish(to_grpc_status(guarded(work))); });
+  if (!taken) {
+    reactor->Finish(to_grpc_status(absl::ResourceExhaustedError("too many long calls are waiting, the bound is " +
+                                                                std::to_string(backend.calls.max_queued()))));
+  }
+  return reactor;
+}
+
+}  // namespace lipofill::server

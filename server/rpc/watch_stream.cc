@@ -1,0 +1,131 @@
+#include "server/rpc/watch_stream.h"
+
+#include <array>
+#include <exception>
+
+#include "server/rpc/status_mapping.h"
+
+namespace lipofill::server {
+namespace {
+
+/// A slice over bytes that others send too; it keeps them alive.
+grpc::Slice share(const std::shared_ptr<const EncodedMessages>& encoded, const std::string& message) {
+  using Owner = std::shared_ptr<const EncodedMessages>;
+  return grpc::Slice(
+      const_cast<char*>(message.data()), message.size(), [](void* owner) { delete static_cast<Owner*>(owner); },
+      new Owner(encoded));
+}
+
+}  // namespace
+
+void WatchStream::begin(std::shared_ptr<Viewer> viewer, std::function<void()> on_done) {
+  self_ = shared_from_this();
+  on_done_ = std::move(on_done);
+  std::unique_lock lock(mutex_);
+  viewer_ = std::move(viewer);
+  advance(std::move(lock));
+}
+
+void WatchStream::begin_kept(const EncodedMessages& meshes, const EncodedMessages& frame) {
+  self_ = shared_from_this();
+  std::unique_lock lock(mutex_);
+  queue_meshes(std::make_shared<const EncodedMessages>(meshes));
+  queue_frame(std::make_shared<const EncodedMessages>(frame), 0);
+  end_ = absl::OkStatus();
+  advance(std::move(lock));
+}
+
+void WatchStream::begin_failed(const absl::Status& status) {
+  self_ = shared_from_this();
+  std::unique_lock lock(mutex_);
+  end_ = status;
+  advance(std::move(lock));
+}
+
+void WatchStream::wake() {
+  if (!woken_.exchange(true)) courier_.wake(weak_from_this());
+}
+
+void WatchStream::deliver() {
+  woken_ = false;
+  advance(std::unique_lock(mutex_));
+}
+
+void WatchStream::OnWriteDone(bool ok) {
+  std::unique_lock lock(mutex_);
+  writing_ = false;
+  at_hand_.Clear();
+  if (!ok) cancelled_ = true;
+  advance(std::move(lock));
+}
+
+void WatchStream::OnCancel() {
+  std::unique_lock lock(mutex_);
+  cancelled_ = true;
+  advance(std::move(lock));
+}
+
+void WatchStream::OnDone() {
+  if (on_done_ != nullptr) on_done_();
+  const std::shared_ptr<WatchStream> last = std::move(self_);
+}
+
+// One write is under way at a time, and Finish comes once: after the last write, also when the client has gone.
+void WatchStream::advance(std::unique_lock<std::mutex> lock) {
+  if (writing_ || finished_) return;
+  if (cancelled_) {
+    end_ = absl::CancelledError("the viewer has gone");
+    outgoing_.clear();
+  } else if (outgoing_.empty() && !end_) {
+    try {
+      fetch();
+    } catch (const std::exception& error) {
+      end_ = absl::ResourceExhaustedError(error.what());
+    }
+  }
+  if (!outgoing_.empty()) {
+    at_hand_.Swap(&outgoing_.front());
+    outgoing_.pop_front();
+    writing_ = true;
+    lock.unlock();
+    StartWrite(&at_hand_);
+  } else if (end_) {
+    finished_ = true;
+    const grpc::Status status = to_grpc_status(*end_);
+    lock.unlock();
+    Finish(status);
+  }
+}
+
+void WatchStream::fetch() {
+  while (outgoing_.empty() && !end_ && viewer_ != nullptr) {
+    ToSend next = viewer_->take();
+    if (auto* meshes = std::get_if<TopologyToSend>(&next)) {
+      queue_meshes(encode_shared(*meshes->topology, viewer_->meshes()));
+    } else if (auto* frame = std::get_if<FrameToSend>(&next)) {
+      queue_frame(encode_shared(*frame->frame, viewer_->meshes(), topology_hash_), frame->skipped);
+    } else if (auto* end = std::get_if<EndOfStream>(&next)) {
+      end_ = end->status;
+    } else {
+      return;
+    }
+  }
+}
+
+void WatchStream::queue_meshes(const std::shared_ptr<const EncodedMessages>& meshes) {
+  topology_hash_ = meshes->topology_hash;
+  if (topology_hash_ == known_topology_hash_) return;
+  for (const std::string& message : meshes->messages) {
+    const grpc::Slice slice = share(meshes, message);
+    outgoing_.emplace_back(&slice, 1);
+  }
+}
+
+void WatchStream::queue_frame(const std::shared_ptr<const EncodedMessages>& frame, uint64_t skipped) {
+  for (const std::string& body : frame->messages) {
+    const std::array<grpc::Slice, 2> slices = {grpc::Slice(frame_header(body.size(), skipped)), share(frame, body)};
+    outgoing_.emplace_back(slices.data(), slices.size());
+  }
+}
+
+}  // namespace lipofill::server

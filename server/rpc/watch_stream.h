@@ -1,0 +1,67 @@
+#pragma once
+
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "server/rpc/courier.h"
+#include "server/rpc/frame_encoding.h"
+#include "server/sessions/viewer.h"
+
+namespace lipofill::server {
+
+/// The server's side of one Watch: takes what its viewer holds and writes it, one message at a time, as fast as the
+/// client reads. Messages share their bytes with those of other viewers.
+///
+/// It keeps itself alive from begin() until gRPC is done with it.
+class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
+                    public Courier::Stream,
+                    public std::enable_shared_from_this<WatchStream> {
+ public:
+  WatchStream(Courier& courier, std::string known_topology_hash)
+      : courier_(courier), known_topology_hash_(std::move(known_topology_hash)) {}
+
+  /// A stream that shows what a session puts into the viewer. `on_done` is called once, at the end.
+  void begin(std::shared_ptr<Viewer> viewer, std::function<void()> on_done);
+  /// A stream of messages that are all there.
+  void begin_kept(const EncodedMessages& meshes, const EncodedMessages& frame);
+  /// A stream that ends at once.
+  void begin_failed(const absl::Status& status);
+  /// For the viewer: there is something to take. Never blocks.
+  void wake();
+
+  void deliver() override;
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override;
+  void OnDone() override;
+
+ private:
+  void advance(std::unique_lock<std::mutex> lock);
+  void fetch();
+  void queue_meshes(const std::shared_ptr<const EncodedMessages>& meshes);
+  void queue_frame(const std::shared_ptr<const EncodedMessages>& frame, uint64_t skipped);
+
+  Courier& courier_;
+  const std::string known_topology_hash_;
+  std::shared_ptr<WatchStream> self_;
+  std::function<void()> on_done_;
+  std::atomic<bool> woken_ = false;
+
+  std::mutex mutex_;
+  std::shared_ptr<Viewer> viewer_;
+  std::string topology_hash_;
+  std::deque<grpc::ByteBuffer> outgoing_;
+  grpc::ByteBuffer at_hand_;
+  bool writing_ = false;
+  bool cancelled_ = false;
+  bool finished_ = false;
+  std::optional<absl::Status> end_;
+};
+
+}  // namespace lipofill::server

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "core/simulation/simulation.h"
+
+namespace lipofill::server {
+
+/// Messages ready for the wire, and the hash of the meshes they belong to.
+struct EncodedMessages {
+  std::string topology_hash;
+  std::vector<std::string> messages;
+};
+
+/// Encodings of one thing, one for each set of meshes, made by whoever needs it first and shared by all viewers.
+class EncodingCache {
+ public:
+  using Encoder = std::function<EncodedMessages()>;
+
+  /// The encoding under `key`; others that ask for it meanwhile wait.
+  std::shared_ptr<const EncodedMessages> get(const std::string& key, const Encoder& encode) const {
+    const std::lock_guard lock(mutex_);
+    auto& entry = entries_[key];
+    if (entry == nullptr) entry = std::make_shared<const EncodedMessages>(encode());
+    return entry;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, std::shared_ptr<const EncodedMessages>> entries_;
+};
+
+/// The meshes of a simulation, at rest.
+struct Topology {
+  std::vector<simulation::MeshTopology> meshes;
+  EncodingCache encodings;
+
+  bool has(const std::string& mesh) const {
+    for (const auto& m : meshes) {
+      if (m.name == mesh) return true;
+    }
+    return false;
+  }
+};
+
+/// The state after a step, as viewers see it. Immutable once shared.
+struct Frame {
+  uint64_t epoch = 0;
+  uint64_t sequence = 0;
+  double time_s = 0.0;
+  bool end = false;  ///< nothing comes after it
+  std::vector<simulation::FrameField> fields;
+  EncodingCache encodings;
+
+  size_t size_bytes() const {
+    size_t bytes = 0;
+    for (const auto& field : fields) bytes += field.values.size() * sizeof(float);
+    return bytes;
+  }
+};
+
+}  // namespace lipofill::server

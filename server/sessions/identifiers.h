@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace lipofill::server {
+
+/// `prefix` and 16 random hexadecimal digits: an id for a resource whose maker gave none.
+std::string make_id(char prefix);
+
+/// Microseconds since 1970.
+int64_t now_us();
+
+}  // namespace lipofill::server

@@ -1,0 +1,408 @@
+#include "server/sessions/session.h"
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <set>
+
+#include "absl/strings/str_cat.h"
+#include "spdlog/spdlog.h"
+
+namespace lipofill::server {
+namespace {
+
+using simulation::Phase;
+
+constexpr auto kSlice = std::chrono::milliseconds(10);
+constexpr size_t kSeriesChunk = 500;
+
+double seconds(WorkerPool::Clock::duration d) {
+  return std::chrono::duration<double>(d).count();
+}
+
+SimulationState state_of(Phase phase) {
+  switch (phase) {
+    case Phase::kRunning:
+      return SimulationState::kRunning;
+    case Phase::kSettled:
+      return SimulationState::kSettled;
+    case Phase::kFinished:
+      return SimulationState::kFinished;
+    case Phase::kFailed:
+      return SimulationState::kFailed;
+  }
+  return SimulationState::kFailed;
+}
+
+double median(std::vector<float> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+Session::Session(SessionOptions options, std::unique_ptr<simulation::Simulation> simulation, WorkerPool& workers,
+                 SessionSink& sink)
+    : options_(std::move(options)), workers_(workers), sink_(sink), simulation_(std::move(simulation)) {
+  view_.n_hexahedra = simulation_->n_hexahedra();
+  view_.n_film_cells = simulation_->n_film_cells();
+  view_.n_dofs = simulation_->n_dofs();
+  update_view();
+}
+
+// ---- mailbox
+
+void Session::post(Command command) {
+  {
+    const std::lock_guard lock(mailbox_mutex_);
+    mailbox_.push_back(std::move(command));
+  }
+  carry_out_when_idle();
+}
+
+bool Session::mailbox_empty() const {
+  const std::lock_guard lock(mailbox_mutex_);
+  return mailbox_.empty();
+}
+
+// Whoever fails to get the lock may leave: its holder looks at the mailbox again after letting go.
+void Session::carry_out_when_idle() {
+  while (!mailbox_empty()) {
+    const std::unique_lock lock(execution_, std::try_to_lock);
+    if (!lock.owns_lock()) return;
+    carry_out_commands();
+  }
+}
+
+void Session::carry_out_commands() {
+  while (true) {
+    Command next;
+    {
+      const std::lock_guard lock(mailbox_mutex_);
+      if (mailbox_.empty()) return;
+      next = std::move(mailbox_.front());
+      mailbox_.pop_front();
+    }
+    next();
+  }
+}
+
+// Nothing that goes wrong here may cost the caller its answer.
+void Session::answer(const Reply& reply, const std::function<absl::Status()>& act) {
+  absl::StatusOr<SessionView> result = absl::UnknownError("");
+  try {
+    const absl::Status done = act();
+    if (done.ok()) {
+      result = full_view();
+    } else {
+      result = done;
+    }
+  } catch (const std::bad_alloc&) {
+    result = absl::ResourceExhaustedError(absl::StrCat("simulations/", options_.id, ": out of memory"));
+  } catch (const std::exception& error) {
+    result = absl::InternalError(absl::StrCat("simulations/", options_.id, ": ", error.what()));
+  }
+  reply(std::move(result));
+}
+
+void Session::command(const char* what, std::initializer_list<SimulationState> allowed, const Reply& reply,
+                      const std::function<absl::Status()>& act) {
+  if (std::find(allowed.begin(), allowed.end(), view_.state) != allowed.end()) return answer(reply, act);
+  reply(absl::FailedPreconditionError(
+      absl::StrCat("cannot ", what, ": simulations/", options_.id, " is ", state_name(view_.state))));
+}
+
+// ---- commands
+
+void Session::start(Reply reply) {
+  post([this, reply] {
+    command("start", {SimulationState::kReady}, reply, [this] {
+      run();
+      return absl::OkStatus();
+    });
+  });
+}
+
+void Session::pause(Reply reply) {
+  post([this, reply] {
+    command("pause", {SimulationState::kRunning}, reply, [this] {
+      leave_running();
+      set_state(SimulationState::kPaused, "");
+      spdlog::info("simulations/{} paused at step {}", options_.id, view_.report.step);
+      return absl::OkStatus();
+    });
+  });
+}
+
+void Session::resume(Reply reply) {
+  post([this, reply] {
+    command("resume", {SimulationState::kPaused}, reply, [this] {
+      run();
+      return absl::OkStatus();
+    });
+  });
+}
+
+void Session::stop(std::string reason, Reply reply) {
+  post([this, reason, reply] {
+    command("stop", {SimulationState::kReady, SimulationState::kRunning, SimulationState::kPaused}, reply,
+            [this, &reason] {
+              finish(SimulationState::kStopped, reason);
+              return absl::OkStatus();
+            });
+  });
+}
+
+void Session::inject(simulation::InjectionSpec injection, Reply reply) {
+  post([this, injection, reply] {
+    command("inject", {SimulationState::kReady, SimulationState::kRunning, SimulationState::kPaused}, reply,
+            [this, &injection] {
+              const absl::Status done = simulation_->inject(injection);
+              if (done.ok()) {
+                spdlog::info("simulations/{} takes an injection at step {}", options_.id, view_.report.step);
+              }
+              return done;
+            });
+  });
+}
+
+void Session::inspect(Reply reply) {
+  post([this, reply] { answer(reply, [] { return absl::OkStatus(); }); });
+}
+
+// ---- viewers
+
+void Session::watch(std::shared_ptr<Viewer> viewer) {
+  post([this, viewer] {
+    try {
+      const auto meshes = topology();
+      if (const absl::Status chosen = viewer->choose_meshes(*meshes); !chosen.ok()) return viewer->close(chosen);
+      viewer->show_topology(meshes);
+      if (last_frame_ != nullptr) return viewer->offer(last_frame_);
+      viewer->offer(make_frame(viewer->meshes(), false));
+      viewers_.push_back(viewer);
+    } catch (const std::exception& error) {
+      viewer->close(absl::InternalError(absl::StrCat("simulations/", options_.id, ": ", error.what())));
+    }
+  });
+}
+
+void Session::unwatch(std::shared_ptr<Viewer> viewer) {
+  post([this, viewer] { std::erase(viewers_, viewer); });
+}
+
+void Session::capture(std::vector<std::string> meshes, CaptureReply reply) {
+  post([this, meshes, reply] {
+    std::shared_ptr<const Topology> shown;
+    std::shared_ptr<const Frame> frame;
+    try {
+      shown = topology();
+      frame = last_frame_ != nullptr ? last_frame_ : make_frame(meshes, false);
+    } catch (const std::exception& error) {
+      spdlog::error("simulations/{}: its fields cannot be taken: {}", options_.id, error.what());
+    }
+    reply(shown, frame);
+  });
+}
+
+void Session::close_viewers(absl::Status status) {
+  post([this, status] {
+    for (const auto& viewer : viewers_) viewer->close(status);
+    viewers_.clear();
+  });
+}
+
+std::shared_ptr<const Topology> Session::topology() {
+  if (topology_ == nullptr) {
+    auto made = std::make_shared<Topology>();
+    made->meshes = simulation_->topology();
+    topology_ = made;
+  }
+  return topology_;
+}
+
+std::shared_ptr<const Frame> Session::make_frame(const std::vector<std::string>& meshes, bool end) {
+  auto frame = std::make_shared<Frame>();
+  frame->epoch = options_.epoch;
+  frame->sequence = simulation_->report().step;
+  frame->time_s = simulation_->report().time;
+  frame->end = end;
+  frame->fields = simulation_->frame(meshes);
+  return frame;
+}
+
+void Session::show_to_viewers() {
+  std::erase_if(viewers_, [](const auto& viewer) { return viewer->closed(); });
+  std::vector<std::shared_ptr<Viewer>> due;
+  std::set<std::string> meshes;
+  for (const auto& viewer : viewers_) {
+    if (!viewer->wants(simulation_->report().time)) continue;
+    due.push_back(viewer);
+    meshes.insert(viewer->meshes().begin(), viewer->meshes().end());
+  }
+  if (due.empty()) return;
+  const auto frame = make_frame({meshes.begin(), meshes.end()}, false);
+  for (const auto& viewer : due) viewer->offer(frame);
+}
+
+// ---- running
+
+void Session::run() {
+  running_since_ = Clock::now();
+  running_since_time_s_ = simulation_->report().time;
+  set_state(SimulationState::kRunning, "");
+  spdlog::info("simulations/{} runs from step {}", options_.id, view_.report.step);
+  if (scheduled_) return;
+  scheduled_ = true;
+  workers_.schedule(shared_from_this());
+}
+
+void Session::leave_running() {
+  if (view_.state == SimulationState::kRunning) wall_before_s_ += seconds(Clock::now() - running_since_);
+}
+
+WorkerPool::Next Session::take_turn() {
+  WorkerPool::Next next;
+  {
+    const std::lock_guard lock(execution_);
+    carry_out_commands();
+    next = advance_slice();
+    scheduled_ = next.kind != WorkerPool::Next::kNothing;
+  }
+  carry_out_when_idle();
+  return next;
+}
+
+WorkerPool::Next Session::advance_slice() {
+  const Clock::time_point begin = Clock::now();
+  while (view_.state == SimulationState::kRunning) {
+    if (options_.real_time && due_time() > Clock::now()) return {WorkerPool::Next::kLater, due_time()};
+    try {
+      advance_one_step();
+    } catch (const std::exception& error) {
+      finish(SimulationState::kFailed, absl::StrCat("step ", view_.report.step + 1, ": ", error.what()));
+    }
+    carry_out_commands();
+    if (Clock::now() - begin >= kSlice) break;
+  }
+  if (view_.state != SimulationState::kRunning) return {};
+  return {WorkerPool::Next::kAgain, {}};
+}
+
+Session::Clock::time_point Session::due_time() const {
+  const double ahead_s = simulation_->report().time - running_since_time_s_;
+  return running_since_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(ahead_s));
+}
+
+void Session::advance_one_step() {
+  const Clock::time_point begin = Clock::now();
+  simulation_->advance_step();
+  const double wall_ms = 1e3 * seconds(Clock::now() - begin);
+  const Phase phase = simulation_->phase();
+  if (phase != Phase::kFailed) record_step(wall_ms);
+  if (phase != Phase::kRunning) return finish(state_of(phase), simulation_->reason());
+  show_to_viewers();
+}
+
+void Session::record_step(double wall_ms) {
+  step_ms_.push_back(static_cast<float>(wall_ms));
+  update_view();
+  size_t n_pending = 0;
+  {
+    const std::lock_guard lock(view_mutex_);
+    pending_.push_back({simulation_->report(), wall_ms});
+    n_pending = pending_.size();
+  }
+  if (n_pending >= kSeriesChunk) flush_series();
+}
+
+// Rows leave `pending_` only once they are in the sink, so that a reader who looks here first and there next misses
+// none.
+void Session::flush_series() {
+  std::vector<SeriesEntry> rows;
+  {
+    const std::lock_guard lock(view_mutex_);
+    rows = pending_;
+  }
+  if (rows.empty()) return;
+  if (const absl::Status kept = sink_.append_series(options_.id, rows); !kept.ok()) {
+    spdlog::error("simulations/{}: {} rows of its series are lost: {}", options_.id, rows.size(), kept.ToString());
+  }
+  const std::lock_guard lock(view_mutex_);
+  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(rows.size()));
+}
+
+void Session::set_state(SimulationState state, std::string reason) {
+  {
+    const std::lock_guard lock(view_mutex_);
+    view_.state = state;
+    view_.reason = std::move(reason);
+  }
+  if (simulation_ != nullptr) update_view();
+}
+
+void Session::finish(SimulationState state, const std::string& reason) {
+  leave_running();
+  try {
+    set_state(state, reason);
+    conclude();
+  } catch (const std::exception& error) {
+    spdlog::error("simulations/{}: its result is lost: {}", options_.id, error.what());
+    for (const auto& viewer : viewers_) viewer->close(absl::InternalError("the result of the simulation is lost"));
+  }
+  viewers_.clear();
+  simulation_ = nullptr;
+}
+
+void Session::conclude() {
+  spdlog::info("simulations/{} is {} after {} steps, {:.3f} s simulated{}{}", options_.id, state_name(view_.state),
+               view_.report.step, view_.report.time, view_.reason.empty() ? "" : ": ", view_.reason);
+  flush_series();
+  const SessionView view = full_view();
+  {
+    const std::lock_guard lock(view_mutex_);
+    view_ = view;
+  }
+  const auto meshes = topology();
+  last_frame_ = make_frame({}, true);
+  const absl::Status kept = sink_.ended(options_.id, view, *meshes, *last_frame_);
+  if (!kept.ok()) spdlog::error("simulations/{}: its result is not in the store: {}", options_.id, kept.ToString());
+  for (const auto& viewer : viewers_) viewer->offer(last_frame_);
+}
+
+// ---- figures
+
+void Session::update_view() {
+  std::vector<simulation::ZoneReport> zones = simulation_->zone_reports();
+  double wall_s = wall_before_s_;
+  if (view_.state == SimulationState::kRunning) wall_s += seconds(Clock::now() - running_since_);
+  const std::lock_guard lock(view_mutex_);
+  view_.report = simulation_->report();
+  view_.zones = std::move(zones);
+  view_.wall_s = wall_s;
+}
+
+SessionView Session::full_view() {
+  if (simulation_ != nullptr) update_view();
+  SessionView view = cached_view();
+  if (simulation_ != nullptr) view.state_hash = simulation_->state_hash();
+  view.step_ms_median = median(step_ms_);
+  return view;
+}
+
+SessionView Session::cached_view() const {
+  const std::lock_guard lock(view_mutex_);
+  return view_;
+}
+
+std::vector<SeriesEntry> Session::pending_series(uint64_t after_step) const {
+  const std::lock_guard lock(view_mutex_);
+  std::vector<SeriesEntry> rows;
+  std::copy_if(pending_.begin(), pending_.end(), std::back_inserter(rows),
+               [after_step](const SeriesEntry& row) { return row.report.step > after_step; });
+  return rows;
+}
+
+}  // namespace lipofill::server

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace lipofill::server {
+
+/// A few threads for work too long for a thread that serves the network: building models, reading scans, measuring
+/// distances.
+class TaskPool {
+ public:
+  TaskPool(int n_threads, size_t max_queued);
+  ~TaskPool();
+
+  /// False when too much waits already or the pool has stopped. The work must not throw.
+  [[nodiscard]] bool run(std::function<void()> work);
+  /// Carries out what is queued (whoever waits for an answer gets one), then joins. Idempotent.
+  void stop();
+  size_t max_queued() const { return max_queued_; }
+
+ private:
+  void work();
+
+  const size_t max_queued_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> queue_;
+  bool stopping_ = false;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace lipofill::server

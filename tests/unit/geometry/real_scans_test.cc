@@ -21,6 +21,7 @@ using nlohmann::json;
 
 struct Face {
   const char* name;
+  const char* folder;
   const char* surface;
   const char* landmarks;
   const char* landmarks_key;
@@ -42,7 +43,7 @@ Eigen::Vector3d to_vector(const json& xyz) {
 }
 
 ScanRegionSpec make_region(const Face& face) {
-  const std::filesystem::path folder = LIPOFILL_SHARED_DATA;
+  const std::filesystem::path folder = face.folder;
   ScanRegionSpec region;
   auto scan = read_surface(read_file(folder / face.surface), SurfaceFormat::kObj, 1e-3);
   EXPECT_TRUE(scan.ok()) << scan.status();
@@ -61,8 +62,8 @@ ScanRegionSpec make_region(const Face& face) {
 class RealScans : public ::testing::TestWithParam<Face> {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(std::filesystem::path(LIPOFILL_SHARED_DATA) / GetParam().surface)) {
-      GTEST_SKIP() << "no real scans in " << LIPOFILL_SHARED_DATA;
+    if (!std::filesystem::exists(std::filesystem::path(GetParam().folder) / GetParam().surface)) {
+      GTEST_SKIP() << "no real scans in " << GetParam().folder;
     }
   }
 };
@@ -105,14 +106,18 @@ TEST_P(RealScans, JawAngleRegionBuilds) {
   EXPECT_LT(turn, 25.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Faces, RealScans,
-                         ::testing::Values(Face{"lps_head", "lps_head.obj", "lps_head.landmarks.json", "landmarks"},
-                                           Face{"patient_before", "lps_patient_before.obj", "lps_patient.json",
-                                                "landmarks_before"},
-                                           Face{"patient_target", "lps_patient_target.obj",
-                                                "lps_patient_target.landmarks.json", "landmarks"},
-                                           Face{"james", "james_face.obj", "james_face.landmarks.json", "landmarks"}),
-                         [](const auto& test) { return std::string(test.param.name); });
+constexpr char kReal[] = LIPOFILL_SHARED_DATA;
+constexpr char kSample[] = LIPOFILL_SAMPLE_FACES;
+
+INSTANTIATE_TEST_SUITE_P(
+    Faces, RealScans,
+    ::testing::Values(Face{"half_face", kSample, "half_face.obj", "half_face.landmarks.json", "landmarks"},
+                      Face{"lps_head", kReal, "lps_head.obj", "lps_head.landmarks.json", "landmarks"},
+                      Face{"patient_before", kReal, "lps_patient_before.obj", "lps_patient.json", "landmarks_before"},
+                      Face{"patient_target", kReal, "lps_patient_target.obj", "lps_patient_target.landmarks.json",
+                           "landmarks"},
+                      Face{"james", kReal, "james_face.obj", "james_face.landmarks.json", "landmarks"}),
+    [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace lipofill::geometry

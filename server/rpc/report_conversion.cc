@@ -1,5 +1,6 @@
 #include "server/rpc/report_conversion.h"
 
+#include <Eigen/LU>
 #include <cmath>
 
 namespace lipofill::server {

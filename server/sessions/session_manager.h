@@ -11,7 +11,7 @@
 namespace lipofill::server {
 
 /// The simulations in memory: those that have not ended. Their number is bounded.
-/// Checked by tests/unit/server/session_manager_test.cc.
+/// Checked by tests/unit/server/session_test.cc.
 class SessionManager {
  public:
   explicit SessionManager(int max_sessions) : max_sessions_(max_sessions) {}

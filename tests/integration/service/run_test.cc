@@ -1,0 +1,395 @@
+// A small square from model to result: states, figures, series, viewers, restarts.
+
+#include <cstring>
+#include <future>
+#include <thread>
+
+#include "tests/integration/service/service_fixture.h"
+
+namespace lipofill::testing {
+namespace {
+
+using Simulations = v1::SimulationService::Stub;
+using ::testing::HasSubstr;
+
+class RunTest : public ServiceTest {
+ protected:
+  RunTest() {
+    create_patient();
+    model_ = build_square();
+  }
+
+  v1::Simulation create(double end_s, const std::string& id, bool start = true) {
+    v1::Simulation simulation;
+    const grpc::Status status = create_simulation(square_plan(model_.name(), end_s), id, start, simulation);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return simulation;
+  }
+
+  template <typename Request, typename Method>
+  grpc::Status act(Method method, const std::string& name, v1::Simulation* result = nullptr) {
+    Request request;
+    request.set_name(name);
+    v1::Simulation simulation;
+    const grpc::Status status = call(*simulations_, method, request, simulation);
+    if (result != nullptr) *result = simulation;
+    return status;
+  }
+  grpc::Status start(const std::string& name, v1::Simulation* result = nullptr) {
+    return act<v1::StartSimulationRequest>(&Simulations::StartSimulation, name, result);
+  }
+  grpc::Status pause(const std::string& name, v1::Simulation* result = nullptr) {
+    return act<v1::PauseSimulationRequest>(&Simulations::PauseSimulation, name, result);
+  }
+  grpc::Status resume(const std::string& name, v1::Simulation* result = nullptr) {
+    return act<v1::ResumeSimulationRequest>(&Simulations::ResumeSimulation, name, result);
+  }
+  grpc::Status stop(const std::string& name, v1::Simulation* result = nullptr) {
+    return act<v1::StopSimulationRequest>(&Simulations::StopSimulation, name, result);
+  }
+  v1::GetSeriesResponse series(const std::string& name, uint64_t after = 0) {
+    v1::GetSeriesRequest request;
+    request.set_name(name);
+    request.set_after_step(after);
+    v1::GetSeriesResponse response;
+    const grpc::Status status = call(*simulations_, &Simulations::GetSeries, request, response);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return response;
+  }
+  v1::WatchRequest watch_request(const std::string& name, v1::WatchRequest::Delivery delivery) {
+    v1::WatchRequest request;
+    request.set_simulation(name);
+    request.set_delivery(delivery);
+    return request;
+  }
+
+  v1::Model model_;
+};
+
+TEST_F(RunTest, FinishesWithFiguresAndSeries) {
+  create(0.3, "x");
+  const v1::Simulation ended = await_end("simulations/x");
+  EXPECT_EQ(ended.state(), v1::Simulation::FINISHED) << ended.reason();
+  const v1::Summary& summary = ended.summary();
+  EXPECT_EQ(summary.steps(), 30u);
+  EXPECT_NEAR(summary.time_s(), 0.3, 1e-9);
+  EXPECT_NEAR(summary.injected_ml(), 0.03, 1e-9);
+  EXPECT_LT(summary.film_volume_relative_error(), 1e-10);
+  EXPECT_GT(summary.skin_max_displacement_mm(), 0.0);
+  EXPECT_GT(summary.max_pressure_pa(), 0.0);
+  EXPECT_EQ(summary.hexahedra(), 128u);
+  EXPECT_EQ(summary.film_cells(), 9u);
+  EXPECT_GT(summary.step_ms_median(), 0.0);
+  EXPECT_GT(summary.wall_s(), 0.0);
+  EXPECT_EQ(summary.state_hash().size(), 64u);
+  ASSERT_EQ(summary.zones_size(), 1);
+  EXPECT_EQ(summary.zones(0).name(), "middle");
+
+  const v1::GetSeriesResponse all = series("simulations/x");
+  ASSERT_EQ(all.rows_size(), 30);
+  EXPECT_FALSE(all.more());
+  for (int i = 0; i < 30; ++i) EXPECT_EQ(all.rows(i).step(), static_cast<uint64_t>(i + 1));
+  EXPECT_EQ(all.rows(29).probe_thickness_mm_size(), 1);
+  EXPECT_EQ(all.rows(29).injected_ml(), summary.injected_ml());
+  EXPECT_EQ(series("simulations/x", 25).rows_size(), 5);
+}
+
+TEST_F(RunTest, GivesTheSameBytesBesideOthersAndUnderWatch) {
+  create(0.3, "alone");
+  const std::string hash = await_end("simulations/alone").summary().state_hash();
+  std::vector<std::unique_ptr<Watcher>> watchers;
+  for (int i = 0; i < 4; ++i) create(0.3, "x" + std::to_string(i), false);
+  for (int i = 0; i < 4; ++i) {
+    const std::string name = "simulations/x" + std::to_string(i);
+    watchers.push_back(std::make_unique<Watcher>(*channel_, watch_request(name, v1::WatchRequest::LATEST)));
+    EXPECT_TRUE(start(name).ok());
+  }
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(await_end("simulations/x" + std::to_string(i)).summary().state_hash(), hash);
+    watchers[static_cast<size_t>(i)]->drain();
+    EXPECT_TRUE(watchers[static_cast<size_t>(i)]->finish().ok());
+  }
+}
+
+TEST_F(RunTest, ResultsSurviveARestart) {
+  create(0.2, "x");
+  const v1::Simulation before = await_end("simulations/x");
+  const std::string rows = series("simulations/x").SerializeAsString();
+  SeenFrame last_before;
+  Watcher(*channel_, watch_request("simulations/x", v1::WatchRequest::EVERY)).drain(&last_before);
+  restart();
+  EXPECT_EQ(get_simulation("simulations/x").SerializeAsString(), before.SerializeAsString());
+  EXPECT_EQ(series("simulations/x").SerializeAsString(), rows);
+  SeenFrame last;
+  Watcher watcher(*channel_, watch_request("simulations/x", v1::WatchRequest::EVERY));
+  EXPECT_EQ(watcher.drain(&last), 1);
+  EXPECT_TRUE(watcher.finish().ok());
+  EXPECT_TRUE(last.slice.end());
+  EXPECT_EQ(last.slice.sequence(), 20u);
+  EXPECT_EQ(last.slice.epoch(), last_before.slice.epoch());
+  EXPECT_EQ(last.bytes, last_before.bytes);
+  EXPECT_EQ(watcher.meshes.count("skin.points"), 1u);
+  EXPECT_EQ(watcher.meshes.count("film/plane.cells"), 1u);
+  EXPECT_EQ(watcher.meshes.count("tissue.points"), 0u) << "not asked for";
+
+  // The model is built again from its specification and must be the same one.
+  create(0.2, "again");
+  EXPECT_EQ(await_end("simulations/again").summary().state_hash(), before.summary().state_hash());
+}
+
+TEST_F(RunTest, PausesResumesInjectsAndStops) {
+  create(1000.0, "x");
+  const std::string name = "simulations/x";
+  v1::Simulation paused;
+  ASSERT_TRUE(pause(name, &paused).ok());
+  EXPECT_EQ(paused.state(), v1::Simulation::PAUSED);
+  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  EXPECT_EQ(get_simulation(name).summary().steps(), paused.summary().steps()) << "it stands still";
+
+  v1::InjectRequest inject;
+  inject.set_name(name);
+  *inject.mutable_injection() = parse_text<v1::Injection>("zone: 'middle' volume_ml: 0.02 rate_ml_per_s: 0.1");
+  v1::Simulation injected;
+  ASSERT_TRUE(call(*simulations_, &Simulations::Inject, inject, injected).ok());
+  EXPECT_EQ(injected.spec().injections_size(), 2);
+
+  ASSERT_TRUE(resume(name).ok());
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (get_simulation(name).summary().injected_ml() < 0.07 - 1e-9 && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  v1::Simulation stopped;
+  ASSERT_TRUE(stop(name, &stopped).ok());
+  EXPECT_EQ(stopped.state(), v1::Simulation::STOPPED);
+  EXPECT_NEAR(stopped.summary().injected_ml(), 0.07, 1e-9);
+  EXPECT_EQ(get_simulation(name).state(), v1::Simulation::STOPPED);
+  EXPECT_EQ(get_simulation(name).spec().injections_size(), 2);
+}
+
+TEST_F(RunTest, RefusesCommandsInWrongStates) {
+  create(1000.0, "x", false);
+  const std::string name = "simulations/x";
+  const grpc::Status early = pause(name);
+  EXPECT_EQ(early.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_THAT(early.error_message(), HasSubstr("READY"));
+  EXPECT_EQ(resume(name).error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  ASSERT_TRUE(start(name).ok());
+  EXPECT_THAT(start(name).error_message(), HasSubstr("RUNNING"));
+  ASSERT_TRUE(stop(name).ok());
+  for (const grpc::Status& late : {start(name), pause(name), resume(name), stop(name)}) {
+    EXPECT_EQ(late.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+    EXPECT_THAT(late.error_message(), HasSubstr("STOPPED"));
+  }
+  EXPECT_EQ(start("simulations/none").error_code(), grpc::StatusCode::NOT_FOUND);
+}
+
+TEST_F(RunTest, CreateIsIdempotent) {
+  v1::CreateSimulationRequest request;
+  request.set_request_id("r-1");
+  *request.mutable_spec() = square_plan(model_.name(), 0.1);
+  v1::Simulation first, again;
+  ASSERT_TRUE(call(*simulations_, &Simulations::CreateSimulation, request, first).ok());
+  ASSERT_TRUE(call(*simulations_, &Simulations::CreateSimulation, request, again).ok());
+  EXPECT_EQ(first.name(), again.name());
+  request.set_start(true);
+  EXPECT_EQ(call(*simulations_, &Simulations::CreateSimulation, request, again).error_code(),
+            grpc::StatusCode::INVALID_ARGUMENT);
+  v1::ListSimulationsResponse all;
+  ASSERT_TRUE(call(*simulations_, &Simulations::ListSimulations, v1::ListSimulationsRequest(), all).ok());
+  EXPECT_EQ(all.simulations_size(), 1);
+}
+
+TEST_F(RunTest, DeletesARunningSimulation) {
+  create(1000.0, "x");
+  Watcher watcher(*channel_, watch_request("simulations/x", v1::WatchRequest::LATEST));
+  SeenFrame frame;
+  ASSERT_TRUE(watcher.next(frame));
+  v1::DeleteSimulationRequest request;
+  request.set_name("simulations/x");
+  google::protobuf::Empty nothing;
+  ASSERT_TRUE(call(*simulations_, &Simulations::DeleteSimulation, request, nothing).ok());
+  SeenFrame last;
+  watcher.drain(&last);
+  EXPECT_TRUE(last.slice.end());
+  EXPECT_TRUE(watcher.finish().ok());
+  EXPECT_EQ(stop("simulations/x").error_code(), grpc::StatusCode::NOT_FOUND);
+}
+
+TEST_F(RunTest, EveryViewerGetsEveryFrameAndResumes) {
+  create(0.2, "x", false);
+  Watcher watcher(*channel_, watch_request("simulations/x", v1::WatchRequest::EVERY));
+  SeenFrame frame;
+  ASSERT_TRUE(watcher.next(frame)) << "a READY simulation shows its first frame";
+  EXPECT_EQ(frame.slice.sequence(), 0u);
+  EXPECT_EQ(frame.slice.topology_hash(), watcher.topology_hash);
+  ASSERT_TRUE(start("simulations/x").ok());
+  for (uint64_t step = 1; step <= 20; ++step) {
+    ASSERT_TRUE(watcher.next(frame));
+    EXPECT_EQ(frame.slice.sequence(), step);
+    EXPECT_EQ(frame.skipped, 0u);
+    EXPECT_EQ(frame.bytes.count("skin.displacement"), 1u);
+    EXPECT_EQ(frame.bytes["film/plane.pressure"].size(), 9 * sizeof(float));
+  }
+  EXPECT_TRUE(frame.slice.end());
+  EXPECT_FALSE(watcher.next(frame));
+  EXPECT_TRUE(watcher.finish().ok());
+
+  v1::WatchRequest known = watch_request("simulations/x", v1::WatchRequest::EVERY);
+  known.set_known_topology_hash(watcher.topology_hash);
+  Watcher again(*channel_, known);
+  ASSERT_TRUE(again.next(frame));
+  EXPECT_TRUE(again.meshes.empty()) << "it has the meshes";
+}
+
+TEST_F(RunTest, ResumesAStreamWhereItBroke) {
+  create(1000.0, "x");
+  SeenFrame frame;
+  v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::EVERY);
+  {
+    Watcher watcher(*channel_, request);
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(watcher.next(frame));
+    watcher.cancel();
+    watcher.drain();
+    EXPECT_EQ(watcher.finish().error_code(), grpc::StatusCode::CANCELLED);
+  }
+  ASSERT_TRUE(pause("simulations/x").ok());
+  const uint64_t now = get_simulation("simulations/x").summary().steps();
+  request.set_seen_epoch(frame.slice.epoch());
+  request.set_seen_sequence(now);
+  Watcher watcher(*channel_, request);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  ASSERT_TRUE(resume("simulations/x").ok());
+  ASSERT_TRUE(watcher.next(frame));
+  EXPECT_EQ(frame.slice.sequence(), now + 1);
+  ASSERT_TRUE(stop("simulations/x").ok());
+}
+
+TEST_F(RunTest, ThinsFramesByInterval) {
+  create(0.2, "x", false);
+  v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::EVERY);
+  request.set_interval_ms(60);
+  request.add_meshes("skin");
+  Watcher watcher(*channel_, request);
+  SeenFrame frame;
+  ASSERT_TRUE(watcher.next(frame));
+  ASSERT_TRUE(start("simulations/x").ok());
+  std::vector<uint64_t> sequences;
+  while (watcher.next(frame)) {
+    sequences.push_back(frame.slice.sequence());
+    EXPECT_EQ(frame.bytes.count("film/plane.pressure"), 0u);
+  }
+  EXPECT_THAT(sequences, ::testing::ElementsAre(6, 12, 18, 20));
+}
+
+TEST_F(RunTest, ShowsWhatIsAskedFor) {
+  create(0.05, "x");
+  await_end("simulations/x");
+  v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::LATEST);
+  request.add_meshes("tissue");
+  Watcher watcher(*channel_, request);
+  SeenFrame frame;
+  ASSERT_TRUE(watcher.next(frame));
+  EXPECT_EQ(watcher.meshes.count("tissue.cells"), 1u);
+  EXPECT_EQ(frame.bytes["tissue.displacement"].size(), watcher.meshes["tissue.points"].size());
+
+  request.set_meshes(0, "bone");
+  Watcher lost(*channel_, request);
+  EXPECT_FALSE(lost.next(frame));
+  const grpc::Status status = lost.finish();
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(violations_of(status).count("meshes[0]"), 1u);
+}
+
+TEST_F(RunTest, SigtermKeepsWhatWasReached) {
+  create(1000.0, "running");
+  create(1000.0, "ready", false);
+  Watcher watcher(*channel_, watch_request("simulations/running", v1::WatchRequest::LATEST));
+  SeenFrame frame;
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(watcher.next(frame));
+  daemon_->signal(SIGTERM);
+  watcher.drain();
+  EXPECT_EQ(watcher.finish().error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_EQ(daemon_->wait(), 0);
+  connect();
+  const v1::Simulation stopped = get_simulation("simulations/running");
+  EXPECT_EQ(stopped.state(), v1::Simulation::STOPPED);
+  EXPECT_EQ(stopped.reason(), "daemon stopped");
+  EXPECT_GE(stopped.summary().steps(), 2u);
+  EXPECT_EQ(series("simulations/running").rows_size(),
+            static_cast<int>(std::min<uint64_t>(stopped.summary().steps(), 10'000)));
+  SeenFrame last;
+  Watcher kept(*channel_, watch_request("simulations/running", v1::WatchRequest::LATEST));
+  EXPECT_EQ(kept.drain(&last), 1);
+  EXPECT_EQ(last.slice.sequence(), stopped.summary().steps());
+  EXPECT_EQ(get_simulation("simulations/ready").state(), v1::Simulation::STOPPED);
+}
+
+TEST_F(RunTest, AHardDeathIsTold) {
+  create(1000.0, "x");
+  restart_hard();
+  const v1::Simulation failed = get_simulation("simulations/x");
+  EXPECT_EQ(failed.state(), v1::Simulation::FAILED);
+  EXPECT_EQ(failed.reason(), "the daemon stopped");
+  Watcher watcher(*channel_, watch_request("simulations/x", v1::WatchRequest::LATEST));
+  SeenFrame frame;
+  EXPECT_FALSE(watcher.next(frame));
+  EXPECT_EQ(watcher.finish().error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+}
+
+TEST_F(RunTest, RealTimeDoesNotRunAhead) {
+  v1::SimulationSpec plan = square_plan(model_.name(), 0.5);
+  plan.set_pace(v1::REAL_TIME);
+  v1::Simulation simulation;
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_TRUE(create_simulation(plan, "x", true, simulation).ok());
+  EXPECT_EQ(await_end("simulations/x").state(), v1::Simulation::FINISHED);
+  // The last step may begin when the time before it is over.
+  EXPECT_GE(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds(480));
+}
+
+TEST_F(RunTest, MeasuresTheSkinAgainstATarget) {
+  create(0.3, "x", false);
+  v1::Scan target;
+  ASSERT_TRUE(upload("patients/anna", v1::OBJ, sheet_obj(30, 0.0), target).ok());
+  v1::EvaluateSimulationRequest request;
+  request.set_name("simulations/x");
+  request.set_target_scan(target.name());
+  v1::Evaluation before, after, kept;
+  grpc::Status status = call(*simulations_, &Simulations::EvaluateSimulation, request, before);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_NEAR(before.simulated_to_target().max_mm(), 0.0, 1e-4) << "the square lies in the sheet";
+  EXPECT_EQ(before.mesh(), "skin");
+  EXPECT_EQ(before.vertices_size(), 81);
+  ASSERT_TRUE(start("simulations/x").ok());
+  const v1::Simulation ended = await_end("simulations/x");
+  ASSERT_TRUE(call(*simulations_, &Simulations::EvaluateSimulation, request, after).ok());
+  EXPECT_GT(after.simulated_to_target().max_mm(), 0.5 * ended.summary().skin_max_displacement_mm());
+  EXPECT_NEAR(after.before_to_target().max_mm(), 0.0, 1e-4);
+  EXPECT_EQ(after.distance_mm_size(), 81);
+  restart();
+  ASSERT_TRUE(call(*simulations_, &Simulations::EvaluateSimulation, request, kept).ok());
+  EXPECT_EQ(kept.SerializeAsString(), after.SerializeAsString());
+}
+
+class BoundedTest : public ServiceTest {
+ protected:
+  BoundedTest() : ServiceTest({"--max-simulations", "2"}) {}
+};
+
+TEST_F(BoundedTest, RefusesOneSimulationTooMany) {
+  create_patient();
+  const v1::SimulationSpec plan = square_plan(build_square().name(), 1.0);
+  v1::Simulation simulation;
+  ASSERT_TRUE(create_simulation(plan, "a", false, simulation).ok());
+  ASSERT_TRUE(create_simulation(plan, "b", false, simulation).ok());
+  const grpc::Status refused = create_simulation(plan, "c", false, simulation);
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_THAT(refused.error_message(), HasSubstr("bound is 2"));
+  v1::StopSimulationRequest stop;
+  stop.set_name("simulations/a");
+  ASSERT_TRUE(call(*simulations_, &Simulations::StopSimulation, stop, simulation).ok());
+  EXPECT_TRUE(create_simulation(plan, "c", false, simulation).ok());
+}
+
+}  // namespace
+}  // namespace lipofill::testing

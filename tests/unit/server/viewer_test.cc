@@ -1,0 +1,185 @@
+#include "server/sessions/viewer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/base/field_violations.h"
+
+namespace lipofill::server {
+namespace {
+
+using ::testing::ElementsAre;
+
+std::shared_ptr<const Frame> frame(uint64_t sequence, double time_s = 0.0, bool end = false, size_t floats = 10) {
+  auto made = std::make_shared<Frame>();
+  made->epoch = 5;
+  made->sequence = sequence;
+  made->time_s = time_s;
+  made->end = end;
+  made->fields.push_back({"skin", "pressure", "Pa", simulation::FieldLocation::kPoint, 1, std::vector<float>(floats)});
+  return made;
+}
+
+FrameToSend take_frame(Viewer& viewer) {
+  const ToSend next = viewer.take();
+  const auto* taken = std::get_if<FrameToSend>(&next);
+  EXPECT_NE(taken, nullptr);
+  return taken == nullptr ? FrameToSend{} : *taken;
+}
+
+bool has_nothing(Viewer& viewer) {
+  return std::holds_alternative<std::monostate>(viewer.take());
+}
+
+absl::Status take_end(Viewer& viewer) {
+  const ToSend next = viewer.take();
+  const auto* end = std::get_if<EndOfStream>(&next);
+  return end == nullptr ? absl::UnknownError("not the end") : end->status;
+}
+
+TEST(Viewer, LatestSkipsAndCounts) {
+  int wakes = 0;
+  Viewer viewer({}, [&wakes] { ++wakes; });
+  EXPECT_TRUE(has_nothing(viewer));
+  for (uint64_t i = 1; i <= 4; ++i) viewer.offer(frame(i));
+  EXPECT_EQ(wakes, 4);
+  const FrameToSend first = take_frame(viewer);
+  EXPECT_EQ(first.frame->sequence, 4u);
+  EXPECT_EQ(first.skipped, 3u);
+  EXPECT_TRUE(has_nothing(viewer));
+  viewer.offer(frame(5));
+  const FrameToSend second = take_frame(viewer);
+  EXPECT_EQ(second.frame->sequence, 5u);
+  EXPECT_EQ(second.skipped, 0u);
+}
+
+TEST(Viewer, EveryKeepsAllInOrder) {
+  ViewerOptions options;
+  options.delivery = Delivery::kEvery;
+  Viewer viewer(options, [] {});
+  for (uint64_t i = 1; i <= 3; ++i) viewer.offer(frame(i));
+  for (uint64_t i = 1; i <= 3; ++i) EXPECT_EQ(take_frame(viewer).frame->sequence, i);
+  EXPECT_TRUE(has_nothing(viewer));
+}
+
+TEST(Viewer, EveryEndsWhenItsBytesOverflow) {
+  ViewerOptions options;
+  options.delivery = Delivery::kEvery;
+  options.max_queued_bytes = 100;  // two frames of 40 bytes fit
+  Viewer viewer(options, [] {});
+  viewer.offer(frame(1));
+  viewer.offer(frame(2));
+  EXPECT_FALSE(viewer.closed());
+  viewer.offer(frame(3));
+  EXPECT_TRUE(viewer.closed());
+  viewer.offer(frame(4));
+  const absl::Status end = take_end(viewer);
+  EXPECT_TRUE(absl::IsResourceExhausted(end)) << end;
+  EXPECT_THAT(std::string(end.message()), ::testing::HasSubstr("100 bytes"));
+  EXPECT_TRUE(has_nothing(viewer));
+}
+
+TEST(Viewer, OneFrameLargerThanTheBoundStillGoes) {
+  ViewerOptions options;
+  options.delivery = Delivery::kEvery;
+  options.max_queued_bytes = 8;
+  Viewer viewer(options, [] {});
+  viewer.offer(frame(1));
+  EXPECT_EQ(take_frame(viewer).frame->sequence, 1u);
+  viewer.offer(frame(2));
+  EXPECT_EQ(take_frame(viewer).frame->sequence, 2u);
+}
+
+TEST(Viewer, EndsOkAfterTheLastFrame) {
+  Viewer viewer({}, [] {});
+  viewer.show_topology(std::make_shared<Topology>());
+  viewer.offer(frame(1));
+  viewer.offer(frame(2, 0.0, true));
+  EXPECT_TRUE(std::holds_alternative<TopologyToSend>(viewer.take()));
+  const FrameToSend last = take_frame(viewer);
+  EXPECT_TRUE(last.frame->end);
+  EXPECT_EQ(last.skipped, 1u);
+  EXPECT_TRUE(take_end(viewer).ok());
+  EXPECT_TRUE(has_nothing(viewer));
+}
+
+TEST(Viewer, AnErrorComesBeforeWhatIsQueued) {
+  Viewer viewer({}, [] {});
+  viewer.show_topology(std::make_shared<Topology>());
+  viewer.offer(frame(1));
+  viewer.close(absl::UnavailableError("stopping"));
+  EXPECT_TRUE(absl::IsUnavailable(take_end(viewer)));
+}
+
+TEST(Viewer, ThinsFramesByTheInterval) {
+  ViewerOptions options;
+  options.delivery = Delivery::kEvery;
+  options.interval_s = 0.05;
+  Viewer viewer(options, [] {});
+  std::vector<uint64_t> shown;
+  double time_s = 0.0;  // a sum of steps, as in a simulation
+  for (uint64_t step = 0; step <= 20; ++step, time_s += 0.01) {
+    if (!viewer.wants(time_s)) continue;
+    viewer.offer(frame(step, time_s));
+    shown.push_back(step);
+  }
+  EXPECT_THAT(shown, ElementsAre(0, 5, 10, 15, 20));
+}
+
+TEST(Viewer, DoesNotSendAgainWhatWasSeen) {
+  ViewerOptions options;
+  options.delivery = Delivery::kEvery;
+  options.seen_epoch = 5;
+  options.seen_sequence = 2;
+  Viewer viewer(options, [] {});
+  for (uint64_t i = 1; i <= 3; ++i) viewer.offer(frame(i));
+  EXPECT_EQ(take_frame(viewer).frame->sequence, 3u);
+  EXPECT_TRUE(has_nothing(viewer));
+
+  options.seen_epoch = 4;  // another life of the daemon
+  Viewer other(options, [] {});
+  other.offer(frame(1));
+  EXPECT_EQ(take_frame(other).frame->sequence, 1u);
+}
+
+TEST(Viewer, TellsTheEndEvenOfASeenFrame) {
+  ViewerOptions options;
+  options.seen_epoch = 5;
+  options.seen_sequence = 9;
+  Viewer viewer(options, [] {});
+  viewer.offer(frame(9, 0.0, true));
+  EXPECT_TRUE(take_frame(viewer).frame->end);
+  EXPECT_TRUE(take_end(viewer).ok());
+}
+
+TEST(Viewer, ShowsSkinAndFilmsUnlessAsked) {
+  Topology topology;
+  for (const char* name : {"skin", "scan", "film/deep", "tissue"}) topology.meshes.push_back({name, {}, {}, 3});
+  Viewer viewer({}, [] {});
+  ASSERT_TRUE(viewer.choose_meshes(topology).ok());
+  EXPECT_THAT(viewer.meshes(), ElementsAre("film/deep", "skin"));
+
+  ViewerOptions options;
+  options.meshes = {"tissue", "bone"};
+  Viewer picky(options, [] {});
+  const absl::Status refused = picky.choose_meshes(topology);
+  ASSERT_EQ(field_violations_of(refused).size(), 1u) << refused;
+  EXPECT_EQ(field_violations_of(refused)[0].field, "meshes[1]");
+}
+
+TEST(EncodingCacheTest, EncodesOnceForEachSet) {
+  EncodingCache cache;
+  int made = 0;
+  const auto encode = [&made] {
+    ++made;
+    return EncodedMessages{"hash", {"bytes"}};
+  };
+  const auto a = cache.get("skin", encode);
+  const auto b = cache.get("skin", encode);
+  EXPECT_EQ(a, b);
+  cache.get("scan", encode);
+  EXPECT_EQ(made, 2);
+}
+
+}  // namespace
+}  // namespace lipofill::server

@@ -31,10 +31,7 @@ absl::StatusOr<v1::Operation> wait_operation(const Connection& connection, v1::O
     request.mutable_timeout()->set_seconds(kWaitSeconds);
     request.set_seen_progress(operation.progress());
     auto waited = connection.call<v1::OperationService>(&v1::OperationService::Stub::WaitOperation, request);
-    if (!waited.ok()) {
-      if (connection.stop().stop_requested()) cancel_operation(connection, operation.name());
-      return waited.status();
-    }
+    if (!waited.ok()) return waited.status();
     operation = *std::move(waited);
     if (progress) progress(operation.stage(), operation.progress());
   }
@@ -46,8 +43,11 @@ absl::StatusOr<v1::Model> build_model(const Connection& connection, const v1::Bu
                                       const BuildProgress& progress) {
   auto operation = connection.call<v1::PatientService>(&v1::PatientService::Stub::BuildModel, request);
   if (!operation.ok()) return operation.status();
-  const auto done = wait_operation(connection, *std::move(operation), progress);
-  if (!done.ok()) return done.status();
+  const auto done = wait_operation(connection, *operation, progress);
+  if (!done.ok()) {
+    if (connection.stop().stop_requested()) cancel_operation(connection, operation->name());
+    return done.status();
+  }
   v1::Model model;
   if (!done->response().UnpackTo(&model)) {
     return absl::InternalError(absl::StrCat("operation ", done->name(), " ended without a model"));

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "client/cli/exit_codes.h"
+#include "client/cli/interrupt.h"
+#include "client/cpp/connection.h"
+#include "google/protobuf/message.h"
+
+namespace lipofill::client {
+
+using Action = std::function<absl::StatusOr<ExitCode>()>;
+
+/// What all commands share: the options every one has, the connection, the ways to answer.
+class Application {
+ public:
+  std::string server = default_server();
+  bool json = false;
+  Action action;  ///< what the command line asks for
+
+  /// From here on Ctrl-C asks to stop instead of ending the program.
+  const Interrupt& interrupt();
+  Connection connect();
+  Connection connect_to(const std::string& address);
+
+  /// Answers with a message: its JSON with --json, else the text.
+  ExitCode answer(const google::protobuf::Message& message, const std::string& text) const;
+  /// The same where there is nothing to tell but that it is done.
+  ExitCode done(const std::string& text) const;
+
+ private:
+  std::optional<Interrupt> interrupt_;
+};
+
+/// A command with --server and --json that carries out `action` once the command line is read.
+CLI::App* add_command(CLI::App& parent, Application& application, const std::string& name,
+                      const std::string& description, const std::string& examples, Action action);
+
+/// A command that does its work without a daemon: --json only.
+CLI::App* add_local_command(CLI::App& parent, Application& application, const std::string& name,
+                            const std::string& description, const std::string& examples, Action action);
+
+/// A word that only holds further commands.
+CLI::App* add_group(CLI::App& parent, const std::string& name, const std::string& description);
+
+// One for each part of the command line.
+void add_run_command(CLI::App& root, Application& application);
+void add_plan_commands(CLI::App& root, Application& application);
+void add_patient_commands(CLI::App& root, Application& application);
+void add_scan_commands(CLI::App& root, Application& application);
+void add_volume_commands(CLI::App& scan, Application& application);
+void add_model_commands(CLI::App& root, Application& application);
+void add_simulation_commands(CLI::App& root, Application& application);
+void add_watch_command(CLI::App& root, Application& application);
+void add_export_command(CLI::App& root, Application& application);
+void add_evaluate_command(CLI::App& root, Application& application);
+void add_operation_commands(CLI::App& root, Application& application);
+void add_health_command(CLI::App& root, Application& application);
+void add_picture_command(CLI::App& root, Application& application);
+
+}  // namespace lipofill::client

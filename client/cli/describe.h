@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "lipofill/v1/operation_service.pb.h"
+#include "lipofill/v1/patient_service.pb.h"
+#include "lipofill/v1/simulation_service.pb.h"
+
+namespace lipofill::client {
+
+// For people: a few lines about one thing, one line where it stands in a list.
+std::string describe(const v1::Patient& patient);
+std::string describe(const v1::Scan& scan);
+std::string describe(const v1::Model& model);
+std::string describe(const v1::Operation& operation);
+std::string describe(const v1::Evaluation& evaluation);
+std::string list_line(const v1::Patient& patient);
+std::string list_line(const v1::Scan& scan);
+std::string list_line(const v1::Model& model);
+std::string list_line(const v1::Operation& operation);
+std::string list_line(const v1::Simulation& simulation);
+
+}  // namespace lipofill::client

@@ -1,0 +1,97 @@
+// lipofill: the command line of the planner. Each command fills in an action; this file carries it out and turns what
+// came of it into an exit code.
+
+#include <exception>
+#include <iostream>
+#include <string_view>
+
+#include "client/cli/application.h"
+#include "client/cpp/errors.h"
+#include "client/cpp/result_text.h"
+
+namespace lipofill::client {
+namespace {
+
+constexpr char kExamples[] =
+    "Examples:\n"
+    "  lipofill run jaw_angle.json --out result --spawn       simulate a plan, nothing else needed\n"
+    "  lipofill run jaw_angle.json --out result               the same on the daemon at $LIPOFILL_SERVER\n"
+    "  lipofill evaluate result --target goal.obj             how far the simulated skin is from a goal\n"
+    "  lipofill scan extract head.nii.gz --out skin.ply       the skin in a CT\n"
+    "  lipofill simulation list --json                        for scripts: every command has --json\n"
+    "  lipofill COMMAND --help                                examples of each command\n\n";
+
+void add_all_commands(CLI::App& root, Application& application) {
+  add_run_command(root, application);
+  add_plan_commands(root, application);
+  add_patient_commands(root, application);
+  add_scan_commands(root, application);
+  add_model_commands(root, application);
+  add_simulation_commands(root, application);
+  add_watch_command(root, application);
+  add_export_command(root, application);
+  add_evaluate_command(root, application);
+  add_picture_command(root, application);
+  add_operation_commands(root, application);
+  add_health_command(root, application);
+}
+
+void print_error(const Application& application, const absl::Status& status) {
+  if (application.json) {
+    std::cerr << error_json(status) << "\n";
+  } else {
+    std::cerr << "lipofill: " << error_text(status) << "\n";
+  }
+}
+
+/// A command line that does not parse, also as JSON when that was asked for.
+int report_usage(const CLI::App& root, const CLI::ParseError& error, const Application& application) {
+  if (error.get_exit_code() == 0) return root.exit(error);  // --help
+  if (application.json) {
+    print_error(application, absl::InvalidArgumentError(error.what()));
+  } else {
+    root.exit(error);
+  }
+  return static_cast<int>(ExitCode::kBadInput);
+}
+
+ExitCode carry_out(Application& application) {
+  const absl::StatusOr<ExitCode> result = application.action();
+  if (result.ok()) return *result;
+  if (absl::IsCancelled(result.status())) {
+    print_error(application, absl::CancelledError("interrupted"));
+  } else {
+    print_error(application, result.status());
+  }
+  return exit_code_of(result.status());
+}
+
+int run(int argc, char** argv) {
+  Application application;
+  CLI::App root(
+      "Plans facial fat grafting: sends plans to a lipofilld, watches, measures and draws what comes of them.",
+      "lipofill");
+  root.set_version_flag("--version", std::string("lipofill ") + LIPOFILL_VERSION);
+  root.require_subcommand(1);
+  root.footer(std::string(kExamples) + kExitCodeHelp + "\n" + kNotAMedicalDevice);
+  add_all_commands(root, application);
+  try {
+    root.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    for (int i = 1; i < argc; ++i) application.json = application.json || std::string_view(argv[i]) == "--json";
+    return report_usage(root, error, application);
+  }
+  return static_cast<int>(carry_out(application));
+}
+
+}  // namespace
+}  // namespace lipofill::client
+
+int main(int argc, char** argv) {
+  try {
+    return lipofill::client::run(argc, argv);
+  } catch (const std::exception& exception) {
+    std::cerr << "lipofill: " << exception.what() << "\n";
+    return static_cast<int>(lipofill::client::ExitCode::kInternal);
+  }
+}

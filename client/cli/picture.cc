@@ -1,0 +1,49 @@
+#include "client/cli/picture.h"
+
+#include <cstdlib>
+
+#include "absl/strings/str_cat.h"
+#include "client/cli/process.h"
+#include "client/cpp/json_file.h"
+
+namespace lipofill::client {
+namespace {
+
+constexpr char kNoScreen[] =
+    "drawing needs an X server: install one without a screen by 'apt-get install xvfb xauth libgl1-mesa-dri'";
+
+bool has_display() {
+  const char* display = std::getenv("DISPLAY");
+  return display != nullptr && *display != '\0';
+}
+
+absl::Status run_drawing(const std::vector<std::string>& command) {
+  const TemporaryFolder folder;
+  const std::filesystem::path log = folder.path() / "log";
+  const auto code = run_process(command, log);
+  if (!code.ok()) return code.status();
+  if (*code == 0) return absl::OkStatus();
+  const std::string text = read_text_file(log).value_or("");
+  const std::string message =
+      absl::StrCat("the picture could not be drawn (exit code ", *code, ")", text.empty() ? "" : ": ", text);
+  // What the drawing process refuses is the input; what ends it otherwise is the screen.
+  return *code == 2 ? absl::InvalidArgumentError(message) : absl::FailedPreconditionError(message);
+}
+
+}  // namespace
+
+absl::Status draw_picture(const std::filesystem::path& folder, Picture picture, const std::filesystem::path& png) {
+  std::vector<std::string> command = {this_program().string(), "picture", folder.string(), "--out", png.string(),
+                                      "--in-this-process"};
+  if (picture == Picture::kDistance) command.push_back("--distance");
+  absl::Status status = absl::FailedPreconditionError(kNoScreen);
+  if (has_display()) status = run_drawing(command);
+  if (!absl::IsFailedPrecondition(status)) return status;
+  const std::filesystem::path xvfb = find_program("xvfb-run");
+  if (xvfb.empty())
+    return absl::FailedPreconditionError(absl::StrCat(kNoScreen, has_display() ? ", or mend $DISPLAY" : ""));
+  command.insert(command.begin(), {xvfb.string(), "-a", "-s", "-screen 0 1280x1024x24"});
+  return run_drawing(command);
+}
+
+}  // namespace lipofill::client

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "client/cli/run_record.h"
+#include "client/cpp/connection.h"
+#include "lipofill/v1/plan.pb.h"
+#include "lipofill/v1/simulation_service.pb.h"
+
+namespace lipofill::client {
+
+/// What a folder of results says about a simulation that a daemon at a lasting address has.
+absl::StatusOr<RunRecord> record_of_simulation(const Connection& connection, const v1::Simulation& simulation);
+
+/// Writes series.csv and summary.json into a folder of results.
+absl::Status write_figures(const std::filesystem::path& folder, const std::string& plan,
+                           const v1::Simulation& simulation, const std::vector<v1::SeriesRow>& rows);
+
+/// Measures a simulation against a target and writes evaluation.json, distance.vtp and, where it can be drawn,
+/// distance.png. `target` is a surface file, sent to the patient of the simulation's model, or the name of a scan the
+/// daemon has.
+/// @param picture_problem  out: why there is no picture; OK when there is one
+absl::StatusOr<v1::Evaluation> evaluate_into(const std::filesystem::path& folder, const Connection& connection,
+                                             const v1::Simulation& simulation, const std::string& target,
+                                             v1::ScanUnit unit, absl::Status* picture_problem);
+
+}  // namespace lipofill::client

@@ -1,0 +1,298 @@
+#include "client/cli/run.h"
+
+#include <condition_variable>
+#include <iostream>
+#include <thread>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/cli/describe.h"
+#include "client/cli/listing.h"
+#include "client/cli/picture.h"
+#include "client/cli/result_files.h"
+#include "client/cli/simulation_calls.h"
+#include "client/cpp/errors.h"
+#include "client/cpp/landmarks_file.h"
+#include "client/cpp/model_build.h"
+#include "client/cpp/result_text.h"
+#include "client/cpp/scan_upload.h"
+#include "lipofill/v1/patient_service.grpc.pb.h"
+#include "lipofill/v1/simulation_service.grpc.pb.h"
+
+namespace lipofill::client {
+namespace {
+
+using v1::PatientService;
+using v1::SimulationService;
+
+constexpr char kPrivateData[] = ".lipofilld";
+constexpr std::chrono::milliseconds kFollowPeriod(200);
+constexpr double kDefaultEndSeconds = 60.0;
+
+}  // namespace
+
+Run::Run(Application& application, RunOptions options)
+    : application_(application), options_(std::move(options)), progress_(options_.quiet), folder_(options_.out) {}
+
+absl::StatusOr<ExitCode> Run::carry_out() {
+  absl::Status status;
+  for (const auto step : {&Run::read_plan, &Run::reach_daemon, &Run::prepare_patient, &Run::send_scan, &Run::build,
+                          &Run::create_simulation, &Run::simulate, &Run::write_results, &Run::evaluate}) {
+    status = (this->*step)();
+    if (!status.ok()) break;
+  }
+  progress_.finish();
+  if (status.ok() && options_.picture) draw();
+  clean_up();
+  if (!status.ok()) return status;
+  print_summary();
+  return exit_code();
+}
+
+absl::Status Run::read_plan() {
+  auto plan = load_plan(options_.plan);
+  if (!plan.ok()) return plan.status();
+  plan_ = *std::move(plan);
+  if (!options_.scan.empty()) plan_.scan_file = options_.scan;
+  if (!options_.landmarks.empty()) {
+    plan_.landmarks_file = options_.landmarks;
+    plan_.plan.mutable_model()->mutable_scan_region()->clear_landmarks_mm();
+    plan_.plan.mutable_model()->mutable_scan_region()->clear_axes();
+  }
+  if (options_.unit) plan_.plan.mutable_scan()->set_unit(*options_.unit);
+  if (options_.interval_ms) plan_.plan.mutable_output()->set_interval_ms(*options_.interval_ms);
+  if (plan_.plan.name().empty()) plan_.plan.set_name(plan_.path.stem().string());
+  if (auto status = load_plan_landmarks(&plan_); !status.ok()) return status;
+  model_spec_ = plan_.plan.model();
+  record_.plan = plan_.plan.name();
+  record_.up = up_of(model_spec_.scan_region());
+  return folder_.prepare();
+}
+
+absl::Status Run::reach_daemon() {
+  const std::stop_token stop = application_.interrupt().token();
+  if (!options_.spawn) {
+    connection_ = application_.connect();
+    record_.server = connection_->server();
+    return absl::OkStatus();
+  }
+  auto daemon = PrivateDaemon::start(folder_.path() / kPrivateData, stop);
+  if (!daemon.ok()) return daemon.status();
+  daemon_ = *std::move(daemon);
+  connection_ = application_.connect_to(daemon_->server());
+  record_.data = kPrivateData;
+  return absl::OkStatus();
+}
+
+absl::Status Run::prepare_patient() {
+  if (!options_.patient.empty()) {
+    patient_ = full_name("patients", options_.patient);
+    return absl::OkStatus();
+  }
+  const auto patient =
+      connection_->call<PatientService>(&PatientService::Stub::CreatePatient, v1::CreatePatientRequest());
+  if (!patient.ok()) return patient.status();
+  patient_ = patient->name();
+  made_patient_ = true;
+  return absl::OkStatus();
+}
+
+absl::Status Run::send_scan() {
+  if (!plan_.scan_file) return absl::OkStatus();
+  const auto scan = upload_scan(*connection_, patient_, *plan_.scan_file, plan_.plan.scan().unit(),
+                                [this](uint64_t sent, uint64_t size) {
+                                  progress_.show(absl::StrFormat("sending the scan: %d of %d bytes", sent, size));
+                                });
+  if (!scan.ok()) return scan.status();
+  model_spec_.mutable_scan_region()->set_scan(scan->name());
+  progress_.finish(
+      absl::StrFormat("scan: %d vertices, %d triangles", scan->report().vertices(), scan->report().triangles()));
+  return absl::OkStatus();
+}
+
+absl::Status Run::build() {
+  v1::BuildModelRequest request;
+  request.set_parent(patient_);
+  *request.mutable_spec() = model_spec_;
+  auto model = build_model(*connection_, request, [this](const std::string& stage, double fraction) {
+    progress_.show(absl::StrFormat("building the model: %.0f %%  %s", 100.0 * fraction, stage));
+  });
+  if (!model.ok()) return model.status();
+  model_ = *std::move(model);
+  const v1::ModelReport& report = model_.report();
+  progress_.finish(absl::StrFormat("model: %d hexahedra over %.1f cm2, worst scaled Jacobian %.2f", report.hexahedra(),
+                                   report.area_cm2(), report.min_scaled_jacobian()));
+  for (const std::string& remark : report.scan_remarks()) progress_.note(absl::StrCat("  ", remark));
+  return absl::OkStatus();
+}
+
+absl::Status Run::create_simulation() {
+  v1::CreateSimulationRequest request;
+  request.set_display_name(plan_.plan.name());
+  *request.mutable_spec() = plan_.plan.simulation();
+  request.mutable_spec()->set_model(model_.name());
+  auto simulation = connection_->call<SimulationService>(&SimulationService::Stub::CreateSimulation, request);
+  if (!simulation.ok()) return simulation.status();
+  simulation_ = *std::move(simulation);
+  record_.simulation = simulation_.name();
+  return absl::OkStatus();
+}
+
+/// Every frame of the interval, or without one the first and the last.
+v1::WatchRequest Run::watch_request() const {
+  v1::WatchRequest request;
+  request.set_simulation(simulation_.name());
+  const double interval_ms = plan_.plan.output().interval_ms();
+  request.set_delivery(interval_ms > 0.0 ? v1::WatchRequest::EVERY : v1::WatchRequest::LATEST);
+  const v1::TimeControl& time = simulation_.spec().time();
+  const double end_ms = 1e3 * (time.has_end_s() ? time.end_s() : kDefaultEndSeconds);
+  request.set_interval_ms(interval_ms > 0.0 ? interval_ms : end_ms);
+  return request;
+}
+
+absl::Status Run::take_frames(const v1::WatchRequest& request) {
+  WatchHandlers handlers;
+  handlers.on_meshes = [this](Meshes meshes) {
+    folder_.set_meshes(std::move(meshes.arrays));
+    return absl::OkStatus();
+  };
+  handlers.on_frame = [this](const Frame& frame) { return folder_.write_frame(frame.time_s, frame.fields); };
+  return watch(*connection_, request, handlers);
+}
+
+/// Frames are taken and written on a thread of their own, so that the progress goes on while a file is written.
+absl::Status Run::simulate() {
+  v1::WatchRequest request = watch_request();
+  auto meshes = mesh_names(*connection_, simulation_);
+  if (!meshes.ok()) return meshes.status();
+  request.mutable_meshes()->Assign(meshes->begin(), meshes->end());
+  absl::Status frames;
+  std::stop_source ended;
+  absl::Status followed;
+  {
+    const std::jthread taker([&] {
+      frames = take_frames(request);
+      ended.request_stop();
+    });
+    followed = start_and_follow(ended.get_token());
+  }
+  if (application_.interrupt().requested()) {
+    stop_simulation();
+    // What it had reached is worth keeping.
+    const Connection last_words = connection_->without_stop();
+    if (auto state = get_simulation(last_words, simulation_.name()); state.ok()) simulation_ = *std::move(state);
+    (void)fetch_series(last_words, simulation_.name(), &rows_);
+    (void)write_figures(folder_.path(), record_.plan, simulation_, rows_);
+    (void)write_run_record(folder_.path(), record_);
+    return absl::CancelledError("interrupted");
+  }
+  if (!followed.ok()) return followed;
+  return frames;
+}
+
+/// Starts the simulation and shows how far it is until all frames have been taken.
+absl::Status Run::start_and_follow(const std::stop_token& frames_ended) {
+  v1::StartSimulationRequest request;
+  request.set_name(simulation_.name());
+  const auto started = connection_->call<SimulationService>(&SimulationService::Stub::StartSimulation, request);
+  if (!started.ok()) {
+    // Without a start no frame ever comes: the taker is ended by deleting what it watches.
+    v1::DeleteSimulationRequest remove;
+    remove.set_name(simulation_.name());
+    (void)connection_->without_stop().call<SimulationService>(&SimulationService::Stub::DeleteSimulation, remove);
+    return started.status();
+  }
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock lock(mutex);
+  while (!frames_ended.stop_requested()) {
+    // A call that fails here is seen by the taker too, which takes the stream up again or gives up.
+    if (fetch_series(*connection_, simulation_.name(), &rows_).ok()) show_progress();
+    wake.wait_for(lock, frames_ended, kFollowPeriod, [&frames_ended] { return frames_ended.stop_requested(); });
+  }
+  return absl::OkStatus();
+}
+
+void Run::show_progress() {
+  if (!rows_.empty()) progress_.show(progress_text(rows_.back()));
+}
+
+void Run::stop_simulation() {
+  v1::StopSimulationRequest request;
+  request.set_name(simulation_.name());
+  // One that has ended meanwhile refuses, which is as good.
+  (void)connection_->without_stop().call<SimulationService>(&SimulationService::Stub::StopSimulation, request,
+                                                            std::chrono::seconds(10));
+}
+
+absl::Status Run::write_results() {
+  auto simulation = get_simulation(*connection_, simulation_.name());
+  if (!simulation.ok()) return simulation.status();
+  simulation_ = *std::move(simulation);
+  if (auto status = fetch_series(*connection_, simulation_.name(), &rows_); !status.ok()) return status;
+  if (!rows_.empty()) progress_.finish(progress_text(rows_.back()));
+  record_.kept = options_.keep;
+  if (auto status = write_run_record(folder_.path(), record_); !status.ok()) return status;
+  return write_figures(folder_.path(), record_.plan, simulation_, rows_);
+}
+
+absl::Status Run::evaluate() {
+  if (options_.evaluate.empty()) return absl::OkStatus();
+  absl::Status picture_problem;
+  const auto evaluation = evaluate_into(folder_.path(), *connection_, simulation_, options_.evaluate,
+                                        options_.target_unit, &picture_problem);
+  if (!evaluation.ok()) return evaluation.status();
+  if (!picture_problem.ok()) std::cerr << "lipofill: no distance.png: " << picture_problem.message() << "\n";
+  if (!application_.json && !options_.quiet) std::cout << describe(*evaluation) << "\n";
+  return absl::OkStatus();
+}
+
+/// A run without a picture is still a run: what hinders it is told, not failed for.
+void Run::draw() {
+  progress_.show("drawing picture.png");
+  const absl::Status status = draw_picture(folder_.path(), Picture::kResult, folder_.path() / "picture.png");
+  if (!status.ok()) std::cerr << "lipofill: no picture.png: " << status.message() << "\n";
+  progress_.finish();
+}
+
+/// With --discard nothing of the run stays on the daemon; what was never a result does not stay either way.
+void Run::clean_up() {
+  if (options_.keep && !simulation_.name().empty()) return;
+  if (connection_) {
+    const Connection connection = connection_->without_stop();
+    if (!simulation_.name().empty()) {
+      v1::DeleteSimulationRequest request;
+      request.set_name(simulation_.name());
+      (void)connection.call<SimulationService>(&SimulationService::Stub::DeleteSimulation, request);
+    }
+    if (made_patient_) {
+      v1::DeletePatientRequest request;
+      request.set_name(patient_);
+      request.set_force(true);
+      (void)connection.call<PatientService>(&PatientService::Stub::DeletePatient, request);
+    }
+  }
+  if (daemon_) {
+    daemon_.reset();
+    std::error_code error;
+    std::filesystem::remove_all(folder_.path() / kPrivateData, error);
+  }
+}
+
+void Run::print_summary() const {
+  if (application_.json) {
+    std::cout << summary_json(record_.plan, simulation_) << std::flush;
+  } else if (!options_.quiet) {
+    std::cout << summary_text(record_.plan, simulation_) << "results in " << folder_.path().string() << "\n"
+              << std::flush;
+  }
+}
+
+ExitCode Run::exit_code() const {
+  const bool reached =
+      simulation_.state() == v1::Simulation::SETTLED || simulation_.state() == v1::Simulation::FINISHED;
+  return reached ? ExitCode::kOk : ExitCode::kGoalNotReached;
+}
+
+}  // namespace lipofill::client

@@ -1,0 +1,56 @@
+#include <memory>
+
+#include "client/cli/application.h"
+#include "client/cli/run.h"
+#include "client/cli/units.h"
+
+namespace lipofill::client {
+namespace {
+
+constexpr char kDescription[] =
+    "Carry out a plan from scan to result. Writes into the folder: skin_NNNN.vtp, film_NNNN.vtp, tissue_NNNN.vtu and "
+    "(with a scan) "
+    "scan_NNNN.vtp at the interval and at the end, .pvd files that ParaView opens, series.csv, summary.json, "
+    "picture.png, run.json. "
+    "Progress goes to the error output, the summary to the standard output. Ctrl-C stops the simulation.";
+
+constexpr char kRunExamples[] =
+    "  lipofill run jaw_angle.json --out result --spawn\n"
+    "  lipofill run jaw_angle.json --out result --spawn --scan face.obj --landmarks face.json --unit mm\n"
+    "  lipofill run jaw_angle.json --out result --spawn --interval-ms 500 --evaluate goal.obj\n"
+    "  lipofill run square.json --out result --server 10.0.0.5:50061 --json --quiet\n";
+
+}  // namespace
+
+void add_run_command(CLI::App& root, Application& application) {
+  const auto options = std::make_shared<RunOptions>();
+  CLI::App* command = add_command(root, application, "run", kDescription, kRunExamples,
+                                  [&application, options] { return Run(application, *options).carry_out(); });
+  command->add_option("plan", options->plan, "PLAN.json")->required();
+  command->add_option("--out", options->out, "folder of results; made when missing")->required();
+  command
+      ->add_flag("--spawn", options->spawn,
+                 "start a private lipofilld for this run and stop it after; its state stays in OUT/.lipofilld")
+      ->excludes(command->get_option("--server"));
+  command->add_option("--patient", options->patient, "a patient the daemon has; default: a new one");
+  command->add_option("--scan", options->scan, "surface in place of the plan's");
+  command->add_option("--landmarks", options->landmarks,
+                      "landmarks in place of the plan's; FILE.json or FILE.json#object");
+  command->add_option("--unit", options->unit, "unit of the scan: mm, cm or m")
+      ->transform(CLI::CheckedTransformer(kUnitNames));
+  command
+      ->add_option("--interval-ms", options->interval_ms,
+                   "simulated time between written files, in place of the plan's; 0: only first and last")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--evaluate", options->evaluate,
+                      "measure the result against this surface, as lipofill evaluate does");
+  command->add_option("--target-unit", options->target_unit, "unit of that surface: mm (default), cm or m")
+      ->transform(CLI::CheckedTransformer(kUnitNames));
+  command->add_flag(
+      "--keep,!--discard", options->keep,
+      "keep patient, model and simulation where they ran (the default), or delete them once the files are written");
+  command->add_flag("!--no-picture", options->picture, "do not draw picture.png");
+  command->add_flag("--quiet", options->quiet, "no progress, no summary");
+}
+
+}  // namespace lipofill::client

@@ -20,7 +20,7 @@ struct Interval {
 
 Interval find_interval(double t, int n) {
   if (n == 1) return {};
-  const double s = std::clamp(t, 0.0, 1.0) * (n - 1);
+  const double s = (t > 0.0 ? std::min(t, 1.0) : 0.0) * (n - 1);  // 0 for what is not a number
   const int first = std::min(static_cast<int>(s), n - 2);
   return {first, first + 1, s - first};
 }

@@ -1,0 +1,73 @@
+#include "core/geometry/surface_distance.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "tests/unit/geometry/test_surfaces.h"
+
+namespace lipofill::geometry {
+namespace {
+
+SurfaceMesh make_plate(double z, double size, int n) {
+  return make_sheet(n, n, [=](double u, double v) { return Eigen::Vector3d(size * (u - 0.5), size * (v - 0.5), z); });
+}
+
+TEST(SurfaceDistance, IsSignedByTheSideOfAPlane) {
+  Eigen::Matrix3Xd points(3, 3);
+  points << 0.003, 0, 0, 0, 0, 0.001, 0.002, -0.005, 0;
+  const std::vector<double> distances = compute_signed_distances(points, make_plate(0.0, 0.1, 5));
+  EXPECT_NEAR(distances[0], 0.002, 1e-12);
+  EXPECT_NEAR(distances[1], -0.005, 1e-12);
+  EXPECT_NEAR(distances[2], 0.0, 1e-12);
+}
+
+TEST(SurfaceDistance, IsSignedRightlyBesideSharpEdges) {
+  // Two plates at a sharp ridge: a point outside, over the ridge, is nearest to the edge, in front of one plate and behind the other.
+  SurfaceMesh ridge;
+  ridge.points.resize(3, 4);
+  ridge.points << 0, 0, 0.02, -0.02, -0.05, 0.05, 0, 0, 0, 0, -0.1, -0.1;
+  ridge.triangles = {{0, 2, 1}, {0, 1, 3}};
+  Eigen::Matrix3Xd points(3, 3);
+  points << 0.003, -0.003, 0, 0, 0, 0, 0.01, 0.01, -0.01;
+  const std::vector<double> distances = compute_signed_distances(points, ridge);
+  EXPECT_GT(distances[0], 0.0);
+  EXPECT_GT(distances[1], 0.0);
+  EXPECT_LT(distances[2], 0.0);
+}
+
+TEST(SurfaceDistance, BetweenConcentricSpheresIsTheirGap) {
+  const SurfaceMesh inner = make_sphere(0.050, 24);
+  const SurfaceMesh outer = make_sphere(0.053, 24);
+  for (const double d : compute_signed_distances(outer.points, inner)) EXPECT_NEAR(d, 0.003, 3e-5);
+  for (const double d : compute_signed_distances(inner.points, outer)) EXPECT_NEAR(d, -0.003, 6e-5);
+}
+
+TEST(SurfaceDistance, OfSurfaceToItselfIsZero) {
+  const SurfaceMesh sphere = make_sphere(0.05, 8);
+  EXPECT_LT(compute_distance_statistics(compute_signed_distances(sphere.points, sphere)).max, 1e-9);
+}
+
+TEST(SurfaceDistance, StatisticsAreThoseOfTheMagnitudes) {
+  std::vector<double> values(100);
+  for (int k = 0; k < 100; ++k) values[k] = (k % 2 ? 1 : -1) * 1e-3 * (k + 1);
+  const DistanceStatistics statistics = compute_distance_statistics(values);
+  EXPECT_NEAR(statistics.mean, 50.5e-3, 1e-12);
+  EXPECT_NEAR(statistics.rms, 1e-3 * std::sqrt(338350.0 / 100.0), 1e-12);
+  EXPECT_NEAR(statistics.p95, 95e-3, 1e-12);
+  EXPECT_NEAR(statistics.max, 100e-3, 1e-12);
+  EXPECT_EQ(compute_distance_statistics({}).max, 0.0);
+}
+
+TEST(SurfaceDistance, OfAPatchLeavesOutWhatLiesBesideIt) {
+  const SurfaceMesh patch = make_plate(0.004, 0.04, 8);
+  const SurfaceMesh target = make_plate(0.0, 0.2, 50);
+  const PatchDistance distance = compute_patch_distance(patch, target);
+  EXPECT_EQ(distance.patch_to_target.size(), static_cast<size_t>(patch.n_vertices()));
+  EXPECT_NEAR(distance.patch_to_target_statistics.mean, 0.004, 1e-9);
+  EXPECT_NEAR(distance.target_to_patch_statistics.max, 0.004, 1e-9);
+  EXPECT_NEAR(distance.target_to_patch_statistics.rms, 0.004, 1e-9);
+}
+
+}  // namespace
+}  // namespace lipofill::geometry

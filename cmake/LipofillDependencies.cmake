@@ -22,13 +22,20 @@ if(LIPOFILL_TESTS)
   include(GoogleTest)
 endif()
 
-# CHOLMOD's Debian package has no CMake file. Its BLAS must be the serial OpenBLAS: sessions run in parallel, and threads of
-# BLAS inside threads of ours only get in each other's way.
+# CHOLMOD's Debian package has no CMake file. Its BLAS must be OpenBLAS with POSIX threads, told to use one thread (sessions run
+# in parallel, see core/coupling/coupled_factor.cc): Debian's serial OpenBLAS is built without locks and, called from two
+# threads at once, now and then gives wrong results.
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
-find_library(OPENBLAS_SERIAL_LIBRARY openblas PATHS
-  /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/openblas-serial /usr/lib/x86_64-linux-gnu/openblas-serial
-  /usr/lib/aarch64-linux-gnu/openblas-serial NO_DEFAULT_PATH REQUIRED)
+find_library(OPENBLAS_LIBRARY openblas PATHS
+  /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/openblas-pthread /usr/lib/x86_64-linux-gnu/openblas-pthread
+  /usr/lib/aarch64-linux-gnu/openblas-pthread NO_DEFAULT_PATH REQUIRED)
 add_library(lipofill_cholmod INTERFACE)
 target_include_directories(lipofill_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
-target_link_libraries(lipofill_cholmod INTERFACE ${CHOLMOD_LIBRARY} ${OPENBLAS_SERIAL_LIBRARY} gomp)
+target_link_libraries(lipofill_cholmod INTERFACE ${CHOLMOD_LIBRARY} ${OPENBLAS_LIBRARY} gomp)
+# CHOLMOD asks for libblas and liblapack by name and would take the machine's default. Ours, needed by the program itself, are loaded first
+# and stay in its place.
+get_filename_component(OPENBLAS_SERIAL_DIR ${OPENBLAS_SERIAL_LIBRARY} DIRECTORY)
+target_link_libraries(lipofill_cholmod INTERFACE
+  ${OPENBLAS_SERIAL_DIR}/liblapack.so.3 ${OPENBLAS_SERIAL_DIR}/libblas.so.3)
+target_link_options(lipofill_cholmod INTERFACE -Wl,--no-as-needed -Wl,-rpath,${OPENBLAS_SERIAL_DIR})

@@ -10,9 +10,9 @@
 
 namespace lipofill {
 
-/// SHA-256 over a sequence of values, for the names of immutable things and for proving that two runs are the same to the byte.
-/// Numbers enter as their bytes in memory (little-endian on every machine the project supports).
-/// Checked by tests/unit/base/hash_test.cc against FIPS 180-4.
+/// SHA-256 over a sequence of values, for the names of immutable things and for proving that two runs are the same to
+/// the byte. Numbers enter as their bytes in memory (little-endian on every machine the project supports). Checked by
+/// tests/unit/base/hash_test.cc against FIPS 180-4.
 class Hasher {
  public:
   Hasher();
@@ -23,12 +23,10 @@ class Hasher {
   void add_bytes(const void* data, size_t size);
   void add(std::string_view text);
   template <typename T>
-    requires std::is_arithmetic_v<T>
-  void add(T value) {
-    add_bytes(&value, sizeof value);
-  }
+  requires std::is_arithmetic_v<T>
+  void add(T value) { add_bytes(&value, sizeof value); }
   template <typename T>
-    requires std::is_arithmetic_v<T>
+  requires std::is_arithmetic_v<T>
   void add(const std::vector<T>& values) {
     add(static_cast<uint64_t>(values.size()));
     add_bytes(values.data(), values.size() * sizeof(T));

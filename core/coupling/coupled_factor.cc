@@ -9,6 +9,8 @@
 
 #include "absl/strings/str_cat.h"
 
+extern "C" void openblas_set_num_threads(int n_threads);
+
 namespace lipofill::coupling {
 namespace {
 
@@ -20,10 +22,15 @@ constexpr double kShiftOverNorm = 4.0;
 constexpr double kShiftGrowth = 16.0;
 constexpr int kMaxShiftTries = 24;
 
-/// Debian's CHOLMOD opens OpenMP regions of four threads for copying loops; sessions are the project's parallelism, one
-/// thread each.
-void keep_cholmod_on_this_thread() {
+/// Debian's CHOLMOD opens OpenMP regions of four threads for copying loops, and OpenBLAS threads of its own; sessions
+/// are the project's parallelism, one thread each. The first setting is a thread's own, the second the process's.
+void keep_algebra_on_this_thread() {
   omp_set_max_active_levels(0);
+  static const bool once = [] {
+    openblas_set_num_threads(1);
+    return true;
+  }();
+  static_cast<void>(once);
 }
 
 }  // namespace
@@ -189,7 +196,7 @@ Eigen::VectorXd CoupledFactor::Impl::solve(const Eigen::VectorXd& top, const Eig
 }
 
 CoupledFactor::CoupledFactor(const Sparse& s, const Sparse& b) : impl_(std::make_unique<Impl>()) {
-  keep_cholmod_on_this_thread();
+  keep_algebra_on_this_thread();
   impl_->n_dofs = static_cast<int>(s.cols());
   impl_->n_cells = static_cast<int>(b.rows());
   impl_->build_pattern(s, b);
@@ -200,7 +207,7 @@ CoupledFactor::~CoupledFactor() = default;
 
 absl::Status CoupledFactor::factorise(const Sparse& s, const Sparse& b) {
   Impl& impl = *impl_;
-  keep_cholmod_on_this_thread();
+  keep_algebra_on_this_thread();
   impl.fill(s, b);
   const bool first = impl.shift <= 0.0;
   if (first) impl.choose_first_shift(s, b);

@@ -11,7 +11,10 @@ namespace lipofill::coupling {
 namespace {
 
 constexpr int kMaxIterations = 60;
-constexpr int kUndampedIterations = 15;
+/// An edge of hardly any flow between thick and thin cells may turn round in every iteration; from here on each keeps
+/// its direction. Its flow is then too small to matter, or the volume of a cell turns negative and the step is refused.
+constexpr int kFreeDirectionIterations = 12;
+constexpr int kUndampedIterations = 20;
 constexpr double kTolerance = 1e-10;
 
 /// One linear solve (dt J + C) p = d.
@@ -146,8 +149,10 @@ FilmSolveResult solve_films(std::vector<film::FilmProjection*> films, const Wall
   PressureSolver solver(films, walls, n);
   FilmSolveResult result = start;
   Eigen::VectorXd guess = start.volume;
+  std::vector<Eigen::VectorXd> direction = start.flux;
   for (result.iterations = 1; result.iterations <= kMaxIterations; ++result.iterations) {
-    linearise_all(films, guess, result.flux);
+    if (result.iterations <= kFreeDirectionIterations) direction = result.flux;
+    linearise_all(films, guess, direction);
     if (!solver.solve(gather_explicit_volume(films, n) - gap_without_pressure, result.pressure)) break;
     apply_pressure(films, result);
     const double fullest = std::max(result.volume.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());

@@ -36,6 +36,23 @@ std::pair<int, int> find_zone(const std::vector<FilmLayout>& films, const std::s
   return {-1, -1};
 }
 
+/// Evenly over the cells of a zone that do not touch its edge, where the tissue is bonded and a cannula does not go;
+/// over all of them when every cell does.
+void spread_over_zone(const film::FilmGrid& grid, int zone, const Eigen::VectorXd& areas, std::vector<int>& cells,
+                      std::vector<double>& shares) {
+  for (const bool inner_only : {true, false}) {
+    if (!cells.empty()) break;
+    for (int cell = 0; cell < grid.n_cells(); ++cell) {
+      const auto& sides = grid.edge_of_side[cell];
+      const bool inner = *std::min_element(sides.begin(), sides.end()) >= 0;
+      if (grid.zone_of_cell[cell] == zone && (inner || !inner_only)) cells.push_back(cell);
+    }
+  }
+  double area = 0.0;
+  for (const int cell : cells) area += areas[cell];
+  for (const int cell : cells) shares.push_back(areas[cell] / area);
+}
+
 }  // namespace
 
 absl::Status InjectionSchedule::add(const FaceModel& model, const std::vector<FilmLayout>& films,
@@ -73,11 +90,7 @@ absl::Status InjectionSchedule::add(const FaceModel& model, const std::vector<Fi
     injection.cells = {cell};
     injection.shares = {1.0};
   } else {
-    for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {
-      if (layout.grid.zone_of_cell[cell] != zone) continue;
-      injection.cells.push_back(cell);
-      injection.shares.push_back(areas[cell] / zone_area);
-    }
+    spread_over_zone(layout.grid, zone, areas, injection.cells, injection.shares);
   }
   if (!violations.empty()) return violations.to_status();
 

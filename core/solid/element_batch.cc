@@ -193,10 +193,6 @@ __attribute__((target("avx2"))) void compute_batch_avx2(const ElementBatch& batc
 }
 #endif
 
-void compute_batch_baseline(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result) {
-  compute_batch_inline(batch, x, result);
-}
-
 }  // namespace
 
 void ElementBatch::set_lane(int lane, const std::array<int, 8>& hexahedron, const HexNodes& positions,
@@ -218,12 +214,16 @@ void ElementBatch::set_lane(int lane, const std::array<int, 8>& hexahedron, cons
   }
 }
 
+void compute_batch_portable(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result) {
+  compute_batch_inline(batch, x, result);
+}
+
 void compute_batch(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result) {
 #if defined(__x86_64__)
   static const bool has_avx2 = __builtin_cpu_supports("avx2");
   if (has_avx2) return compute_batch_avx2(batch, x, result);
 #endif
-  compute_batch_baseline(batch, x, result);
+  compute_batch_portable(batch, x, result);
 }
 
 }  // namespace lipofill::solid

@@ -48,4 +48,7 @@ struct alignas(kLanes * sizeof(double)) BatchResult {
 /// tests/unit/solid/tissue_test.cc against a dense assembly.
 void compute_batch(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result);
 
+/// The same, bit for bit, in the registers that every processor of the family has.
+void compute_batch_portable(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result);
+
 }  // namespace lipofill::solid

@@ -28,6 +28,8 @@ Tissue::Tissue(HexMesh mesh, const std::vector<ElasticMaterial>& materials, Node
       damping_(damping),
       pattern_(mesh_.n_nodes(), mesh_.hexahedra, supports_.fixed),
       elements_(std::make_unique<const ElementAssembler>(mesh_, materials, pattern_)),
+      geometric_stiffness_(mesh_, materials, pattern_),
+      geometric_values_(pattern_.matrix().nonZeros()),
       stiffness_values_(pattern_.matrix().nonZeros() + 1),
       padded_force_(pattern_.n_dofs() + 1),
       internal_force_(pattern_.n_dofs()),
@@ -70,6 +72,8 @@ void Tissue::assemble(const Eigen::Matrix3Xd& x, double dt) {
   const ElementTotals totals = elements_->add(x, stiffness_values_, padded_force_);
   elastic_energy_ = totals.elastic_energy;
   min_volume_ratio_ = totals.min_volume_ratio;
+  geometric_values_.setZero();
+  geometric_stiffness_.add(x, geometric_values_);
   add_springs(x);
   internal_force_ = padded_force_.head(n_dofs());
   compose_system_matrix(dt);
@@ -94,7 +98,7 @@ void Tissue::compose_system_matrix(double dt) {
   const double stiffness_factor = 1.0 + damping_.beta / dt;
   const double mass_factor = 1.0 / (dt * dt) + damping_.alpha / dt;
   Eigen::Map<Eigen::VectorXd> values(system_matrix_.valuePtr(), system_matrix_.nonZeros());
-  values = stiffness_factor * stiffness_values_.head(system_matrix_.nonZeros());
+  values = stiffness_factor * stiffness_values_.head(system_matrix_.nonZeros()) + geometric_values_;
   for (int dof = 0; dof < n_dofs(); ++dof) values[diagonal_[dof]] += mass_factor * dof_mass_[dof];
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/solid/geometric_stiffness.h"
 #include "core/solid/hex_mesh.h"
 #include "core/solid/material.h"
 #include "core/solid/system_pattern.h"
@@ -30,8 +31,9 @@ struct RayleighDamping {
 /// Corotational finite-element tissue:
 ///
 ///     f_int(x) = sum_e R_e K_e (R_e^T x_e - X_e)        R_e: rotation of the element's centre, K_e constant (24, 24)
-///     S        = M/dt^2 + D/dt + K,   K = sum_e R_e K_e R_e^T + springs
+///     S        = M/dt^2 + D/dt + K + K_G,   K = sum_e R_e K_e R_e^T + springs
 ///
+/// with K_G the stiffness of tension, geometric_stiffness.h,
 /// after Mueller & Gross (2004); S is the paper's K of eq. 5. Mass is lumped by row sums, so that gravity on it is the
 /// consistent load. K_e is the solid-shell (solid_shell.h), in stacked layers EAS-9 (incompatible_modes.h). Degrees of
 /// freedom are the components of nodes that are not fixed, numbered node by node.
@@ -95,6 +97,8 @@ class Tissue {
   Eigen::VectorXd mass_;
   Eigen::VectorXd dof_mass_;          ///< mass of the node of each degree of freedom [kg]
   std::vector<int> diagonal_;         ///< where the diagonal value of each degree of freedom is
+  GeometricStiffness geometric_stiffness_;
+  Eigen::VectorXd geometric_values_;  ///< K_G in the pattern [N/m]
   Eigen::VectorXd stiffness_values_;  ///< K in the pattern, then one place for what is not kept [N/m]
   Eigen::VectorXd padded_force_;      ///< f_int, then one place for what is not kept [N]
   Eigen::VectorXd internal_force_;

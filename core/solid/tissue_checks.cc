@@ -40,11 +40,15 @@ void check_indices(const HexMesh& mesh, int n_materials, FieldViolations& violat
   }
 }
 
-/// A node of no hexahedron has neither mass nor stiffness: S would be singular.
-void check_nodes(const HexMesh& mesh, FieldViolations& violations) {
+/// A node of no hexahedron has neither mass nor stiffness: S would be singular, unless the node is held.
+void check_nodes(const HexMesh& mesh, const NodeSupports& supports, FieldViolations& violations) {
   std::vector<bool> used(mesh.n_nodes(), false);
   for (const auto& hexahedron : mesh.hexahedra) {
     for (int a : hexahedron) used[a] = true;
+  }
+  for (size_t a = 0; a < supports.fixed.size() && a < used.size(); ++a) {
+    const std::array<bool, 3>& held = supports.fixed[a];
+    if (held[0] && held[1] && held[2]) used[a] = true;
   }
   int reports = 0;
   for (int a = 0; a < mesh.n_nodes(); ++a) {
@@ -109,7 +113,7 @@ absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial
   if (!violations.empty()) return violations.to_status();
   check_indices(mesh, static_cast<int>(materials.size()), violations);
   if (!violations.empty()) return violations.to_status();
-  check_nodes(mesh, violations);
+  check_nodes(mesh, supports, violations);
   if (violations.empty()) check_shapes(mesh, violations);
   return violations.to_status();
 }

@@ -21,6 +21,22 @@ double compute_scaled_jacobian(const Eigen::Matrix<double, 3, 8>& x) {
   return worst;
 }
 
+namespace {
+
+/// The smallest cosine between an edge of the deep face and its partner in the outer face. A column that runs through
+/// the centre of a sphere comes out turned by half a circle, with good corners everywhere: this tells.
+double compute_edge_agreement(const Eigen::Matrix<double, 3, 8>& x) {
+  double smallest = 1.0;
+  for (int k = 0; k < 4; ++k) {
+    const Eigen::Vector3d deep = (x.col((k + 1) % 4) - x.col(k)).normalized();
+    const Eigen::Vector3d outer = (x.col(4 + (k + 1) % 4) - x.col(4 + k)).normalized();
+    smallest = std::min(smallest, deep.dot(outer));
+  }
+  return smallest;
+}
+
+}  // namespace
+
 WorstHexahedron find_worst_hexahedron(const LayeredGrid& grid) {
   WorstHexahedron worst;
   for (int level = 0; level + 1 < grid.n_levels(); ++level) {
@@ -34,7 +50,8 @@ WorstHexahedron find_worst_hexahedron(const LayeredGrid& grid) {
           x.col(4 * face + 2) = grid.nodes.col(grid.node(at, i + 1, j + 1));
           x.col(4 * face + 3) = grid.nodes.col(grid.node(at, i, j + 1));
         }
-        const double quality = compute_scaled_jacobian(x);
+        const double agreement = compute_edge_agreement(x);
+        const double quality = agreement > 0.0 ? compute_scaled_jacobian(x) : agreement;
         if (quality >= worst.scaled_jacobian) continue;
         worst = {quality, level, x.rowwise().mean()};
       }

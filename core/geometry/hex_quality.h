@@ -12,7 +12,7 @@ namespace lipofill::geometry {
 /// outside
 double compute_scaled_jacobian(const Eigen::Matrix<double, 3, 8>& x);
 
-/// The worst hexahedron of a grid.
+/// The worst hexahedron of a grid, one turned over against its outer face counting as folded.
 struct WorstHexahedron {
   double scaled_jacobian = 1.0;
   int level = 0;  ///< its outer level

@@ -28,18 +28,17 @@ std::array<Eigen::Vector3d, kRays> make_ray_directions(const Eigen::Vector3d& no
   return directions;
 }
 
-/// Number of free rays; where `enough` is given, counted no further than needed to know whether it is reached.
-int count_free_rays(const RayTree& rays, const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
-                    int enough = 0) {
+/// Whether enough of the rays are free for skin.
+bool is_open(const RayTree& rays, const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d start = position + kRayStart * normal;
   int free_rays = 0;
   int left = kRays;
   for (const Eigen::Vector3d& direction : make_ray_directions(normal)) {
-    if (enough > 0 && (free_rays >= enough || free_rays + left < enough)) break;
+    if (free_rays + left < kFreeRaysOfSkin) return false;
     --left;
-    if (!rays.is_blocked(start, direction)) ++free_rays;
+    if (!rays.is_blocked(start, direction) && ++free_rays >= kFreeRaysOfSkin) return true;
   }
-  return free_rays;
+  return false;
 }
 
 Eigen::Vector3d compute_centre(const SurfaceMesh& mesh, const std::array<int, 3>& triangle) {
@@ -82,24 +81,27 @@ std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across,
     is_candidate[t] = true;
     const Eigen::Vector3d normal = compute_area_vector(mesh, mesh.triangles[t]).normalized();
     const Eigen::Vector3d centre = compute_centre(mesh, mesh.triangles[t]);
-    outer[t] = count_free_rays(rays, centre, normal, kFreeRaysOfSkin) >= kFreeRaysOfSkin;
+    outer[t] = is_open(rays, centre, normal);
   }
   take_in_islands(mesh, across, is_candidate, outer);
   return outer;
 }
 
-bool is_inside_out(const SurfaceMesh& mesh, const RayTree& rays) {
-  constexpr int kSamples = 300;
-  const int stride = std::max(1, mesh.n_triangles() / kSamples);
-  int free_in_front = 0;
-  int free_behind = 0;
-  for (int t = 0; t < mesh.n_triangles(); t += stride) {
-    const Eigen::Vector3d normal = compute_area_vector(mesh, mesh.triangles[t]).normalized();
-    const Eigen::Vector3d centre = compute_centre(mesh, mesh.triangles[t]);
-    free_in_front += count_free_rays(rays, centre, normal);
-    free_behind += count_free_rays(rays, centre, -normal);
+bool is_inside_out(const SurfaceMesh& mesh) {
+  const Eigen::Matrix3Xd normals = compute_vertex_normals(mesh);
+  double agreement = 0.0;
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) {
+      for (int z = -2; z <= 2; ++z) {
+        if (std::max({std::abs(x), std::abs(y), std::abs(z)}) < 2) continue;
+        const Eigen::Vector3d direction = Eigen::Vector3d(x, y, z).normalized();
+        Eigen::Index farthest = 0;
+        (direction.transpose() * mesh.points).maxCoeff(&farthest);
+        agreement += direction.dot(normals.col(farthest));
+      }
+    }
   }
-  return free_behind > free_in_front;
+  return agreement < 0.0;
 }
 
 }  // namespace lipofill::geometry

@@ -17,8 +17,8 @@ namespace lipofill::geometry {
 std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across, const RayTree& rays,
                                   const std::vector<int>& candidates);
 
-/// Whether the surface is turned inside out: rays leave more freely from the backs of its triangles than from their
-/// fronts.
-bool is_inside_out(const SurfaceMesh& mesh, const RayTree& rays);
+/// Whether the surface is turned inside out: where it reaches farthest in a direction its normal must look that way, by
+/// the sum over 98 directions. Inner surfaces reach nowhere farthest, so that they have no say.
+bool is_inside_out(const SurfaceMesh& mesh);
 
 }  // namespace lipofill::geometry

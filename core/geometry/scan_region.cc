@@ -148,8 +148,8 @@ absl::StatusOr<std::array<SurfacePoint, 4>> project_corners(const SurfaceMesh& s
   return corners;
 }
 
-void turn_right_side_out(SurfaceMesh& mesh, std::vector<std::string>& remarks, const RayTree& rays) {
-  if (!is_inside_out(mesh, rays)) return;
+void turn_right_side_out(SurfaceMesh& mesh, std::vector<std::string>& remarks) {
+  if (!is_inside_out(mesh)) return;
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   remarks.push_back("The surface was inside out and has been turned.");
 }
@@ -174,8 +174,7 @@ absl::StatusOr<ScanRegion> find_scan_region(const ScanRegionSpec& spec, const Pr
   CleanedSurface cleaned = clean_surface(spec.scan);
   if (cleaned.mesh.triangles.empty()) return absl::FailedPreconditionError("cleaning leaves no triangle of the scan");
   const SurfaceLocator locator(cleaned.mesh);
-  const RayTree rays(cleaned.mesh);
-  turn_right_side_out(cleaned.mesh, cleaned.remarks, rays);
+  turn_right_side_out(cleaned.mesh, cleaned.remarks);
 
   const absl::Status landmarks = check_landmarks(spec.landmarks, locator);
   if (!landmarks.ok()) return landmarks;
@@ -187,7 +186,7 @@ absl::StatusOr<ScanRegion> find_scan_region(const ScanRegionSpec& spec, const Pr
   if (!sides.ok()) return sides;
 
   if (const absl::Status go = report(progress, 0.2, "finding the outer skin"); !go.ok()) return go;
-  const auto skin = extract_outer_skin(cleaned.mesh, rays, *positions);
+  const auto skin = extract_outer_skin(cleaned.mesh, RayTree(cleaned.mesh), *positions);
   if (!skin.ok()) return skin.status();
   const auto corners = project_corners(skin->mesh, locator, *positions);
   if (!corners.ok()) return corners.status();

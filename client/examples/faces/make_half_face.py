@@ -56,7 +56,7 @@ JOINED = [
     # Skull, mid-face, neck.
     ellipsoid((0, 112, 12), (75, 84, 96), 1),
     ellipsoid((0, 62, 40), (57, 76, 58), 34),
-    rod((0, -120, -12), (0, 30, 2), 54, 50, 16),
+    rod((0, -120, -14), (0, 40, 0), 55, 55, 24),
     # Lower jaw: branch, body, chin.
     rod((49, 60, 34), (41, 11, 34), 12, 10, 22),
     rod((41, 11, 34), (30, -6, 64), 10, 9, 22),
@@ -66,7 +66,8 @@ JOINED = [
     # Upper jaw and teeth under the lips.
     ellipsoid((0, 36, 92), (26, 18, 20), 18),
     ellipsoid((0, 20, 87), (35, 26, 25.5), 18),
-    # Soft tissue: cheek before and beside the mouth, masseter, under the eye.
+    # Soft tissue: behind the jaw under the ear, cheek before and beside the mouth, masseter, under the eye.
+    ellipsoid((43, 36, 10), (20, 52, 26), 30),
     ellipsoid((33, 38, 74), (25, 32, 25), 24),
     ellipsoid((26, 13, 74), (19, 22, 22), 24),
     ellipsoid((42, 34, 50), (18, 32, 24), 24),
@@ -104,11 +105,11 @@ DETAILS = [
     rod((0, 14.8, 112.6), (9, 15.3, 110.8), 4.3, 3.9, 5),
     rod((9, 15.3, 110.8), (21.5, 19.2, 102.8), 3.9, 1.4, 5),
     # Ear: lobe, rim, and the little flap in front of its opening.
-    ellipsoid((69, 68, 2), (7, 25, 13.5), 9, -14),
+    ellipsoid((69, 69, 1), (6.5, 24, 13.5), 12, -14),
     rod((73, 80, 10), (75, 92, 2), 3.0, 3.4, 4),
     rod((75, 92, 2), (76.5, 80, -10), 3.4, 3.4, 4),
     rod((76.5, 80, -10), (73, 58, -5), 3.4, 3.0, 4),
-    rod((73, 58, -5), (68.5, 46, 6), 3.0, 4.4, 5),
+    rod((73, 58, -5), (67, 46, 6), 3.0, 4.2, 9),
     ellipsoid((69, 63, 18.5), (4.5, 6, 4), 5),
 ]
 
@@ -216,7 +217,7 @@ def find_landmarks(rows):
     lateral = {
         "exocanthion": (47, 83, 83),
         "cheilion": (23, 20.2, 103),
-        "gonion": (55, 10, 32),
+        "gonion": (57, 10, 32),
         "zygion": (69, 68, 45),
         "tragion": (72, 66, 21),
     }

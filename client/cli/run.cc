@@ -1,6 +1,7 @@
 #include "client/cli/run.h"
 
 #include <condition_variable>
+#include <future>
 #include <iostream>
 #include <thread>
 #include <utility>
@@ -28,6 +29,7 @@ using v1::SimulationService;
 
 constexpr char kPrivateData[] = ".lipofilld";
 constexpr std::chrono::milliseconds kFollowPeriod(200);
+constexpr std::chrono::seconds kWatchTime(5);
 constexpr double kDefaultEndSeconds = 60.0;
 
 }  // namespace
@@ -129,7 +131,7 @@ absl::Status Run::build() {
 
 absl::Status Run::create_simulation() {
   v1::CreateSimulationRequest request;
-  request.set_display_name(plan_.plan.name());
+  request.set_display_name(display_name_of(plan_.plan.name()));
   *request.mutable_spec() = plan_.plan.simulation();
   request.mutable_spec()->set_model(model_.name());
   auto simulation = connection_->call<SimulationService>(&SimulationService::Stub::CreateSimulation, request);
@@ -151,10 +153,11 @@ v1::WatchRequest Run::watch_request() const {
   return request;
 }
 
-absl::Status Run::take_frames(const v1::WatchRequest& request) {
+absl::Status Run::take_frames(const v1::WatchRequest& request, const std::function<void()>& on_watching) {
   WatchHandlers handlers;
-  handlers.on_meshes = [this](Meshes meshes) {
+  handlers.on_meshes = [this, &on_watching](Meshes meshes) {
     folder_.set_meshes(std::move(meshes.arrays));
+    on_watching();
     return absl::OkStatus();
   };
   handlers.on_frame = [this](const Frame& frame) { return folder_.write_frame(frame.time_s, frame.fields); };
@@ -168,13 +171,18 @@ absl::Status Run::simulate() {
   if (!meshes.ok()) return meshes.status();
   request.mutable_meshes()->Assign(meshes->begin(), meshes->end());
   absl::Status frames;
-  std::stop_source ended;
   absl::Status followed;
+  std::stop_source ended;
+  std::promise<void> watching;
   {
     const std::jthread taker([&] {
-      frames = take_frames(request);
+      frames = take_frames(request, [&watching, first = true]() mutable {
+        if (std::exchange(first, false)) watching.set_value();
+      });
       ended.request_stop();
     });
+    // Started only once it is watched, or the first frames would be missed.
+    watching.get_future().wait_for(kWatchTime);
     followed = start_and_follow(ended.get_token());
   }
   if (application_.interrupt().requested()) {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,7 +55,7 @@ class Run {
   void clean_up();
 
   v1::WatchRequest watch_request() const;
-  absl::Status take_frames(const v1::WatchRequest& request);
+  absl::Status take_frames(const v1::WatchRequest& request, const std::function<void()>& on_watching);
   absl::Status start_and_follow(const std::stop_token& frames_ended);
   void show_progress();
   void stop_simulation();

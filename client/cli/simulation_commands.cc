@@ -44,7 +44,7 @@ absl::StatusOr<ExitCode> create(Application& application, const Options& options
   v1::CreateSimulationRequest request;
   request.set_request_id(options.request_id);
   request.set_simulation_id(options.id);
-  request.set_display_name(options.display_name.empty() ? plan->plan.name() : options.display_name);
+  request.set_display_name(options.display_name.empty() ? display_name_of(plan->plan.name()) : options.display_name);
   *request.mutable_spec() = plan->plan.simulation();
   request.mutable_spec()->set_model(options.model);
   request.set_start(options.start);

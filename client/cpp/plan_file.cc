@@ -1,5 +1,6 @@
 #include "client/cpp/plan_file.h"
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "client/cpp/errors.h"
 #include "client/cpp/json_message.h"
@@ -16,6 +17,15 @@ absl::StatusOr<PlanFile> load_plan(const std::filesystem::path& path) {
   if (!scan.file().empty()) file.scan_file = folder / scan.file();
   if (!scan.landmarks_file().empty()) file.landmarks_file = (folder / scan.landmarks_file()).string();
   return file;
+}
+
+std::string display_name_of(const std::string& plan_name) {
+  constexpr size_t kMost = 63;
+  std::string name = absl::AsciiStrToLower(plan_name).substr(0, kMost);
+  for (char& c : name) {
+    if (!absl::ascii_isdigit(static_cast<unsigned char>(c)) && !(c >= 'a' && c <= 'z')) c = '-';
+  }
+  return name;
 }
 
 absl::Status load_plan_landmarks(PlanFile* plan) {

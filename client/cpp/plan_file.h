@@ -22,6 +22,9 @@ struct PlanFile {
 /// each unknown field by its path, with the nearest known name. Checked by tests/unit/client/plan_file_test.cc.
 absl::StatusOr<PlanFile> load_plan(const std::filesystem::path& path);
 
+/// A plan's name as the daemon takes it for dashboards: at most 63 characters of [a-z0-9-].
+std::string display_name_of(const std::string& plan_name);
+
 /// Puts the landmarks file's landmarks and axes into the plan's scan region; does nothing without one.
 absl::Status load_plan_landmarks(PlanFile* plan);
 

@@ -41,6 +41,7 @@ using Surface = vtkSmartPointer<vtkPolyData>;
 
 constexpr int kWidth = 2100;
 constexpr int kHeight = 800;
+constexpr double kPanelWidth = 0.31;  // the rest is for the legend
 constexpr double kSkin[3] = {0.87, 0.70, 0.60};
 constexpr double kInk[3] = {0.12, 0.12, 0.14};
 constexpr char kDisplacement[] = "displacement_mm";
@@ -172,28 +173,33 @@ void add_text(const std::string& text, int size, double x, double y, bool centre
   renderer->AddActor2D(actor);
 }
 
-void add_legend(vtkColorTransferFunction* colours, const char* title, vtkRenderer* renderer) {
+vtkSmartPointer<vtkRenderer> legend_panel(vtkColorTransferFunction* colours, const char* title) {
   vtkNew<vtkScalarBarActor> bar;
   bar->SetLookupTable(colours);
   bar->SetTitle(title);
   bar->SetNumberOfLabels(5);
   bar->SetLabelFormat("%.1f");
   bar->UnconstrainedFontSizeOn();
-  bar->SetPosition(0.83, 0.14);
-  bar->SetWidth(0.15);
-  bar->SetHeight(0.68);
-  bar->SetVerticalTitleSeparation(12);
+  bar->SetPosition(0.05, 0.12);
+  bar->SetWidth(0.75);
+  bar->SetHeight(0.74);
+  bar->SetBarRatio(0.35);
+  bar->SetVerticalTitleSeparation(14);
   for (vtkTextProperty* text : {bar->GetTitleTextProperty(), bar->GetLabelTextProperty()}) {
     text->SetColor(kInk[0], kInk[1], kInk[2]);
-    text->SetFontSize(20);
+    text->SetFontSize(22);
     text->ItalicOff();
     text->BoldOff();
     text->ShadowOff();
   }
+  auto renderer = vtkSmartPointer<vtkRenderer>::New();
+  renderer->SetViewport(3 * kPanelWidth, 0.06, 1.0, 1.0);
+  renderer->SetBackground(1, 1, 1);
   renderer->AddActor2D(bar);
+  return renderer;
 }
 
-/// A third of the picture. `field` colours the surface; skin without one.
+/// One of the three views. `field` colours the surface; skin without one.
 vtkSmartPointer<vtkRenderer> panel(int place, const std::string& title, vtkPolyData* surface, const View& view,
                                    vtkColorTransferFunction* colours, const char* field) {
   vtkNew<vtkPolyDataMapper> mapper;
@@ -214,7 +220,7 @@ vtkSmartPointer<vtkRenderer> panel(int place, const std::string& title, vtkPolyD
   actor->GetProperty()->SetSpecular(field != nullptr ? 0.0 : 0.08);
   actor->GetProperty()->SetSpecularPower(20);
   auto renderer = vtkSmartPointer<vtkRenderer>::New();
-  renderer->SetViewport(place / 3.0, 0.06, (place + 1) / 3.0, 1.0);
+  renderer->SetViewport(place * kPanelWidth, 0.06, (place + 1) * kPanelWidth, 1.0);
   renderer->SetBackground(1, 1, 1);
   renderer->AddActor(actor);
   set_lights(renderer);
@@ -256,11 +262,10 @@ absl::Status draw(const PictureRequest& request, vtkPolyData* after, const char*
   const Surface after_shaded = with_normals(after);
   const Surface before_shaded = with_normals(at_rest(after));
   const View view = view_of(before_shaded, weight, request.up);
-  const auto third = panel(2, third_title, after_shaded, view, colours, field);
-  add_legend(colours, legend, third);
   return write_png(request.png, {panel(0, "Before", before_shaded, view, nullptr, nullptr),
-                                 panel(1, "After, simulated", after_shaded, view, nullptr, nullptr), third,
-                                 caption_panel(request.caption)});
+                                 panel(1, "After, simulated", after_shaded, view, nullptr, nullptr),
+                                 panel(2, third_title, after_shaded, view, colours, field),
+                                 legend_panel(colours, legend), caption_panel(request.caption)});
 }
 
 }  // namespace

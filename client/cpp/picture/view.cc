@@ -17,6 +17,7 @@ using Vector = std::array<double, 3>;
 // A face is recognised by what is around the place: how many radii of the region the picture shows, and at least how
 // much.
 constexpr double kSurroundings = 2.0;
+constexpr double kPlateHalfHeight = 0.9;   // of the same: a plate is shown whole
 constexpr double kLeastHalfHeight = 0.35;  // of the half diagonal of the whole surface
 
 std::vector<double> weights_of(vtkPolyData* surface, const char* name) {
@@ -72,6 +73,7 @@ View view_of(vtkPolyData* surface, const char* weight_name, const std::optional<
   }
   const double whole = 0.5 * surface->GetLength();
   view.half_height_mm = std::min(std::max(kSurroundings * radius, kLeastHalfHeight * whole), whole);
+  if (!up) view.half_height_mm = kPlateHalfHeight * whole;
   // A flat plate is seen at a slant, or its bulge would not show.
   const Vector upward = across(view.direction, up.value_or(Vector{0, 1, 0}));
   if (!up) {

@@ -93,7 +93,6 @@ Surface decimate(vtkPolyData* surface, uint64_t target) {
   if (static_cast<double>(target) >= count) return surface;
   vtkNew<vtkQuadricDecimation> filter;
   filter->SetTargetReduction(1.0 - static_cast<double>(target) / count);
-  filter->VolumePreservationOn();
   return output_of(filter.Get(), surface);
 }
 

@@ -1,0 +1,171 @@
+// Patients, models and the operations that build them.
+
+#include <algorithm>
+
+#include "tests/integration/service/service_fixture.h"
+
+namespace lipofill::testing {
+namespace {
+
+using Patients = v1::PatientService::Stub;
+using Operations = v1::OperationService::Stub;
+using ::testing::HasSubstr;
+
+class BuildTest : public ServiceTest {
+ protected:
+  BuildTest() { create_patient(); }
+
+  v1::BuildModelRequest request(const v1::ModelSpec& spec, const std::string& request_id = "") {
+    v1::BuildModelRequest request;
+    request.set_parent("patients/anna");
+    request.set_request_id(request_id);
+    *request.mutable_spec() = spec;
+    return request;
+  }
+  int n_models() {
+    v1::ListModelsRequest list;
+    list.set_parent("patients/anna");
+    v1::ListModelsResponse models;
+    EXPECT_TRUE(call(*patients_, &Patients::ListModels, list, models).ok());
+    return models.models_size();
+  }
+};
+
+TEST_F(BuildTest, PatientsHaveLabelsPagesAndRequests) {
+  v1::CreatePatientRequest create;
+  create.set_request_id("r1");
+  create.set_display_name("case-7");
+  (*create.mutable_labels())["side"] = "left";
+  v1::Patient first, again;
+  ASSERT_TRUE(call(*patients_, &Patients::CreatePatient, create, first).ok());
+  ASSERT_TRUE(call(*patients_, &Patients::CreatePatient, create, again).ok());
+  EXPECT_EQ(first.SerializeAsString(), again.SerializeAsString());
+  for (const char* id : {"berta", "carl", "dora"}) create_patient(id);
+
+  std::vector<std::string> names;
+  v1::ListPatientsRequest list;
+  list.set_page_size(2);
+  v1::ListPatientsResponse page;
+  do {
+    ASSERT_TRUE(call(*patients_, &Patients::ListPatients, list, page).ok());
+    EXPECT_LE(page.patients_size(), 2);
+    for (const auto& patient : page.patients()) names.push_back(patient.name());
+    list.set_page_token(page.next_page_token());
+  } while (!page.next_page_token().empty());
+  EXPECT_EQ(names.size(), 5u);
+  EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
+
+  v1::UpdatePatientRequest update;
+  *update.mutable_patient() = first;
+  update.mutable_patient()->set_display_name("Anna Smith");
+  const grpc::Status refused = call(*patients_, &Patients::UpdatePatient, update, again);
+  EXPECT_EQ(violations_of(refused).count("patient.display_name"), 1u) << "a name is no pseudonym";
+  update.mutable_patient()->set_display_name("case-8");
+  ASSERT_TRUE(call(*patients_, &Patients::UpdatePatient, update, again).ok());
+  EXPECT_EQ(again.display_name(), "case-8");
+  EXPECT_EQ(again.create_time().nanos(), first.create_time().nanos());
+}
+
+TEST_F(BuildTest, BuildsASquareAndShowsItsMeshes) {
+  const v1::Model model = build_square();
+  EXPECT_EQ(model.report().hexahedra(), 128u);
+  EXPECT_EQ(model.report().nodes(), 243u);
+  EXPECT_NEAR(model.report().area_cm2(), 16.0, 1e-9);
+  EXPECT_NEAR(model.report().tissue_volume_ml(), 9.6, 1e-9);
+  EXPECT_NEAR(model.report().min_scaled_jacobian(), 1.0, 1e-12);
+  EXPECT_EQ(model.report().content_hash().size(), 64u);
+
+  restart();
+  v1::GetModelRequest get;
+  get.set_name(model.name());
+  v1::Model kept;
+  ASSERT_TRUE(call(*patients_, &Patients::GetModel, get, kept).ok());
+  EXPECT_EQ(kept.SerializeAsString(), model.SerializeAsString());
+
+  Context context;
+  v1::DownloadModelMeshRequest download;
+  download.set_name(model.name());
+  auto stream = patients_->DownloadModelMesh(&context, download);
+  v1::MeshSlice slice;
+  std::map<std::string, uint64_t> rows;
+  while (stream->Read(&slice)) {
+    for (const auto& array : slice.arrays()) rows[array.name()] = array.shape(0);
+  }
+  EXPECT_TRUE(stream->Finish().ok());
+  EXPECT_TRUE(slice.last());
+  EXPECT_EQ(rows["skin.points"], 81u);
+  EXPECT_EQ(rows["skin.cells"], 64u);
+  EXPECT_EQ(rows["tissue.cells"], 128u);
+  EXPECT_EQ(rows.count("scan.points"), 0u);
+}
+
+TEST_F(BuildTest, IsIdempotentAlsoAfterARestart) {
+  v1::Operation first, again;
+  ASSERT_TRUE(call(*patients_, &Patients::BuildModel, request(square_spec(), "r1"), first).ok());
+  ASSERT_TRUE(call(*patients_, &Patients::BuildModel, request(square_spec(), "r1"), again).ok());
+  EXPECT_EQ(first.name(), again.name());
+  v1::WaitOperationRequest wait;
+  wait.set_name(first.name());
+  while (!first.done()) ASSERT_TRUE(call(*operations_, &Operations::WaitOperation, wait, first).ok());
+  restart();
+  EXPECT_EQ(call(*operations_, &Operations::WaitOperation, wait, again).error_code(), grpc::StatusCode::NOT_FOUND);
+  ASSERT_TRUE(call(*patients_, &Patients::BuildModel, request(square_spec(), "r1"), again).ok());
+  ASSERT_TRUE(again.done());
+  v1::Model before, after;
+  ASSERT_TRUE(first.response().UnpackTo(&before));
+  ASSERT_TRUE(again.response().UnpackTo(&after));
+  EXPECT_EQ(before.name(), after.name());
+  EXPECT_EQ(n_models(), 1);
+}
+
+TEST_F(BuildTest, ACancelledBuildLeavesNothing) {
+  // Both builders get long work; what waits behind them is cancelled before it begins.
+  v1::ModelSpec large = square_spec();
+  large.set_n_xi(300);
+  large.set_n_eta(300);
+  std::vector<v1::Operation> operations(4);
+  for (auto& operation : operations) {
+    ASSERT_TRUE(call(*patients_, &Patients::BuildModel, request(large), operation).ok());
+  }
+  v1::Operation& last = operations.back();
+  v1::CancelOperationRequest cancel;
+  cancel.set_name(last.name());
+  google::protobuf::Empty nothing;
+  ASSERT_TRUE(call(*operations_, &Operations::CancelOperation, cancel, nothing).ok());
+  v1::WaitOperationRequest wait;
+  wait.mutable_timeout()->set_seconds(60);
+  int models = 0;
+  for (auto& operation : operations) {
+    wait.set_name(operation.name());
+    double progress = 0.0;
+    while (!operation.done()) {
+      wait.set_seen_progress(operation.progress());
+      ASSERT_TRUE(call(*operations_, &Operations::WaitOperation, wait, operation).ok());
+      EXPECT_GE(operation.progress(), progress);
+      progress = operation.progress();
+    }
+    if (operation.has_response()) ++models;
+  }
+  EXPECT_EQ(last.error().code(), static_cast<int>(grpc::StatusCode::CANCELLED)) << last.DebugString();
+  EXPECT_EQ(models, 3);
+  EXPECT_EQ(n_models(), models);
+}
+
+TEST_F(BuildTest, DeletesWhatNothingNeeds) {
+  const v1::Model model = build_square();
+  v1::DeletePatientRequest remove;
+  remove.set_name("patients/anna");
+  google::protobuf::Empty nothing;
+  const grpc::Status refused = call(*patients_, &Patients::DeletePatient, remove, nothing);
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_THAT(refused.error_message(), HasSubstr("1 models"));
+  v1::Scan scan;
+  ASSERT_TRUE(upload("patients/anna", v1::OBJ, sheet_obj(), scan).ok());
+  remove.set_force(true);
+  ASSERT_TRUE(call(*patients_, &Patients::DeletePatient, remove, nothing).ok());
+  EXPECT_THAT(store_content(), HasSubstr("0 files of scans"));
+  EXPECT_EQ(call(*patients_, &Patients::DeletePatient, remove, nothing).error_code(), grpc::StatusCode::NOT_FOUND);
+}
+
+}  // namespace
+}  // namespace lipofill::testing

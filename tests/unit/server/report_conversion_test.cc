@@ -1,0 +1,74 @@
+#include "server/rpc/report_conversion.h"
+
+#include <gtest/gtest.h>
+
+namespace lipofill::server {
+namespace {
+
+SessionView view() {
+  SessionView view;
+  view.report.step = 3;
+  view.report.step_size = 0.01;
+  view.report.injected = 2e-6;
+  view.report.film_volume = 3e-6;
+  view.report.max_pressure = 1500;
+  view.report.max_thickness = 0.004;
+  view.report.skin_max_displacement = 0.0025;
+  view.report.skin_speed = 1e-5;
+  view.report.skin_volume_change = 1e-6;
+  view.report.probe_thickness = {0.001};
+  view.report.probe_pressure = {20};
+  view.zones = {{"masseter", 1e-6, 100, 0.002}};
+  view.state_hash = "hash";
+  view.step_ms_median = 9;
+  return view;
+}
+
+TEST(ReportConversion, SummariesAreInTheUnitsOfTheirNames) {
+  const v1::Summary summary = to_summary(view());
+  EXPECT_EQ(summary.steps(), 3u);
+  EXPECT_DOUBLE_EQ(summary.injected_ml(), 2.0);
+  EXPECT_DOUBLE_EQ(summary.film_volume_ml(), 3.0);
+  EXPECT_DOUBLE_EQ(summary.max_pressure_pa(), 1500);
+  EXPECT_DOUBLE_EQ(summary.max_thickness_mm(), 4.0);
+  EXPECT_DOUBLE_EQ(summary.skin_max_displacement_mm(), 2.5);
+  EXPECT_DOUBLE_EQ(summary.skin_volume_change_ml(), 1.0);
+  EXPECT_DOUBLE_EQ(summary.zones(0).volume_ml(), 1.0);
+  EXPECT_DOUBLE_EQ(summary.zones(0).max_thickness_mm(), 2.0);
+  EXPECT_EQ(summary.state_hash(), "hash");
+}
+
+TEST(ReportConversion, SeriesRowsAreInTheUnitsOfTheirNames) {
+  const v1::SeriesRow row = to_series_row({view().report, 12.5});
+  EXPECT_DOUBLE_EQ(row.step_ms(), 10.0);
+  EXPECT_DOUBLE_EQ(row.wall_ms(), 12.5);
+  EXPECT_DOUBLE_EQ(row.skin_speed_mm_per_s(), 0.01);
+  EXPECT_DOUBLE_EQ(row.probe_thickness_mm(0), 1.0);
+  EXPECT_DOUBLE_EQ(row.probe_pressure_pa(0), 20);
+}
+
+TEST(ReportConversion, EveryStateHasAName) {
+  for (int state = 1; state <= 7; ++state) {
+    const auto wire = to_state(static_cast<SimulationState>(state));
+    EXPECT_EQ(v1::Simulation::State_Name(wire), state_name(static_cast<SimulationState>(state)));
+  }
+}
+
+TEST(ReportConversion, MeasuresTheTissueOfASkewedGrid) {
+  simulation::FaceModel model;
+  geometry::LayeredGrid& grid = model.geometry.grid;
+  grid.n_xi = 2;
+  grid.n_eta = 1;
+  grid.elements_through = {1};
+  grid.nodes.resize(3, 12);
+  for (int level = 0; level < 2; ++level) {
+    for (int j = 0; j < 2; ++j) {
+      for (int i = 0; i < 3; ++i)
+        grid.nodes.col(grid.node(level, i, j)) << 0.01 * i + 0.004 * j, 0.01 * j, -0.003 * level;
+    }
+  }
+  EXPECT_NEAR(to_model_report(model).tissue_volume_ml(), 0.6, 1e-12) << "a shear keeps volume";
+}
+
+}  // namespace
+}  // namespace lipofill::server

@@ -60,7 +60,7 @@ class Tissue {
   const Eigen::VectorXd& mass() const { return mass_; }
 
   /// Brings rotations, internal force and stiffness to the positions `x` (3, n_nodes) [m]. `dt` > 0 [s]; infinity gives
-  /// S = K. Fixed components of `x` count where they are, so a support may be moved. Allocates nothing.
+  /// S = K + K_G. Fixed components of `x` count where they are, so a support may be moved. Allocates nothing.
   void assemble(const Eigen::Matrix3Xd& x, double dt);
 
   /// f_int of the last assemble, springs included, a value a degree of freedom [N].
@@ -95,8 +95,8 @@ class Tissue {
   SystemPattern pattern_;
   std::unique_ptr<const ElementAssembler> elements_;
   Eigen::VectorXd mass_;
-  Eigen::VectorXd dof_mass_;          ///< mass of the node of each degree of freedom [kg]
-  std::vector<int> diagonal_;         ///< where the diagonal value of each degree of freedom is
+  Eigen::VectorXd dof_mass_;   ///< mass of the node of each degree of freedom [kg]
+  std::vector<int> diagonal_;  ///< where the diagonal value of each degree of freedom is
   GeometricStiffness geometric_stiffness_;
   Eigen::VectorXd geometric_values_;  ///< K_G in the pattern [N/m]
   Eigen::VectorXd stiffness_values_;  ///< K in the pattern, then one place for what is not kept [N/m]

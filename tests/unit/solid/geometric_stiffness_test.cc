@@ -1,0 +1,95 @@
+#include "core/solid/geometric_stiffness.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <limits>
+
+#include "core/solid/tissue.h"
+#include "tests/unit/solid/box_mesh.h"
+
+namespace lipofill::solid::testing {
+namespace {
+
+const ElasticMaterial kMaterial{1e5, 0.3, 1000.0};
+
+struct Bar {
+  Box box{{3, 1, 1}, {0.03, 0.01, 0.005}};
+  HexMesh mesh = box.make();
+  SystemPattern pattern{mesh.n_nodes(), mesh.hexahedra,
+                        std::vector<std::array<bool, 3>>(mesh.n_nodes(), {false, false, false})};
+
+  Eigen::MatrixXd geometric_stiffness(const Eigen::Matrix3Xd& x) const {
+    Eigen::SparseMatrix<double> K_G = pattern.matrix();
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(K_G.nonZeros());
+    GeometricStiffness(mesh, {kMaterial}, pattern).add(x, values);
+    Eigen::Map<Eigen::VectorXd>(K_G.valuePtr(), K_G.nonZeros()) = values;
+    return Eigen::MatrixXd(Eigen::SparseMatrix<double>(K_G.selfadjointView<Eigen::Lower>()));
+  }
+};
+
+/// A linear field u = G X costs V tr(G S+ G^T) under a homogeneous stress; here uniaxial strain with lateral
+/// compression left out.
+TEST(GeometricStiffness, CostOfALinearFieldIsThatOfTheTension) {
+  const Bar bar;
+  const Eigen::Vector3d stretch(1.08, 0.95, 1.0);
+  const Eigen::Matrix3Xd x = stretch.asDiagonal() * bar.mesh.rest_positions;
+  const Eigen::Vector3d E = 0.5 * (stretch.array().square() - 1.0);
+  const double mu = 1e5 / 2.6;
+  const double lambda = 1e5 * 0.3 / (1.3 * 0.4);
+  const Eigen::Vector3d S = (lambda * E.sum() + 2.0 * mu * E.array()).cwiseMax(0.0);
+  ASSERT_EQ(S[1], 0.0);
+  Jitter jitter(1);
+  Eigen::Matrix3d G;
+  for (int c = 0; c < 3; ++c) G.col(c) = jitter.next_vector();
+  const Eigen::Matrix3Xd field = G * bar.mesh.rest_positions;
+  const Eigen::Map<const Eigen::VectorXd> u(field.data(), field.size());
+  const double expected = bar.box.size.prod() * (G * S.asDiagonal() * G.transpose()).trace();
+  EXPECT_NEAR(u.dot(bar.geometric_stiffness(x) * u), expected, 1e-11 * expected);
+}
+
+TEST(GeometricStiffness, IsPositiveWhateverTheStress) {
+  const Bar bar;
+  Jitter jitter(2);
+  for (int k = 0; k < 10; ++k) {
+    Eigen::Matrix3Xd x = bar.mesh.rest_positions;
+    for (int a = 0; a < x.cols(); ++a) x.col(a) += 2e-3 * jitter.next_vector();
+    const Eigen::VectorXd values =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(bar.geometric_stiffness(x)).eigenvalues();
+    EXPECT_GT(values.minCoeff(), -1e-12 * values.maxCoeff());
+  }
+}
+
+TEST(GeometricStiffness, IsNothingUnderCompressionOrRotation) {
+  const Bar bar;
+  const double scale = bar.geometric_stiffness(1.1 * bar.mesh.rest_positions).norm();
+  EXPECT_LT(bar.geometric_stiffness(0.9 * bar.mesh.rest_positions).norm(), 1e-13 * scale);
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(1.3, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  EXPECT_LT(bar.geometric_stiffness(R * bar.mesh.rest_positions).norm(), 1e-13 * scale);
+}
+
+/// Turning a stretched bar: the derivative of the force has the tension's part, which K alone leaves out.
+TEST(GeometricStiffness, BringsTheTangentNearTheDerivative) {
+  constexpr double kStatic = std::numeric_limits<double>::infinity();
+  const Bar bar;
+  Tissue tissue = Tissue::create(bar.mesh, {kMaterial}, {}, {}).value();
+  const Eigen::Matrix3Xd x = Eigen::Vector3d(1.05, 0.985, 0.985).asDiagonal() * bar.mesh.rest_positions;
+  Eigen::Matrix3Xd field = Eigen::Matrix3Xd::Zero(3, x.cols());
+  field.row(1) = x.row(0);  // a turn about z, seen from the bar's axis
+  field.row(0) = -x.row(1);
+  const Eigen::Map<const Eigen::VectorXd> u(field.data(), field.size());
+  const double h = 1e-6;
+  tissue.assemble(x + h * field, kStatic);
+  const Eigen::VectorXd forward = tissue.internal_force();
+  tissue.assemble(x - h * field, kStatic);
+  const double derivative = u.dot(forward - tissue.internal_force()) / (2.0 * h);
+  tissue.assemble(x, kStatic);
+  const double with_tension = u.dot(tissue.system_matrix().selfadjointView<Eigen::Lower>() * u);
+  const double without = u.dot(tissue.stiffness_times(u));
+  EXPECT_LT(std::abs(with_tension - derivative), 0.2 * std::abs(without - derivative))
+      << derivative << " with " << with_tension << " without " << without;
+}
+
+}  // namespace
+}  // namespace lipofill::solid::testing

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 #include <new>
-#include <set>
 
 #include "absl/strings/str_cat.h"
 #include "spdlog/spdlog.h"
@@ -170,81 +169,6 @@ void Session::inject(simulation::InjectionSpec injection, Reply reply) {
 
 void Session::inspect(Reply reply) {
   post([this, reply] { answer(reply, [] { return absl::OkStatus(); }); });
-}
-
-// ---- viewers
-
-void Session::watch(std::shared_ptr<Viewer> viewer) {
-  post([this, viewer] {
-    try {
-      const auto meshes = topology();
-      if (const absl::Status chosen = viewer->choose_meshes(*meshes); !chosen.ok()) return viewer->close(chosen);
-      viewer->show_topology(meshes);
-      if (last_frame_ != nullptr) return viewer->offer(last_frame_);
-      viewer->offer(make_frame(viewer->meshes(), false));
-      viewers_.push_back(viewer);
-    } catch (const std::exception& error) {
-      viewer->close(absl::InternalError(absl::StrCat("simulations/", options_.id, ": ", error.what())));
-    }
-  });
-}
-
-void Session::unwatch(std::shared_ptr<Viewer> viewer) {
-  post([this, viewer] { std::erase(viewers_, viewer); });
-}
-
-void Session::capture(std::vector<std::string> meshes, CaptureReply reply) {
-  post([this, meshes, reply] {
-    std::shared_ptr<const Topology> shown;
-    std::shared_ptr<const Frame> frame;
-    try {
-      shown = topology();
-      frame = last_frame_ != nullptr ? last_frame_ : make_frame(meshes, false);
-    } catch (const std::exception& error) {
-      spdlog::error("simulations/{}: its fields cannot be taken: {}", options_.id, error.what());
-    }
-    reply(shown, frame);
-  });
-}
-
-void Session::close_viewers(absl::Status status) {
-  post([this, status] {
-    for (const auto& viewer : viewers_) viewer->close(status);
-    viewers_.clear();
-  });
-}
-
-std::shared_ptr<const Topology> Session::topology() {
-  if (topology_ == nullptr) {
-    auto made = std::make_shared<Topology>();
-    made->meshes = simulation_->topology();
-    topology_ = made;
-  }
-  return topology_;
-}
-
-std::shared_ptr<const Frame> Session::make_frame(const std::vector<std::string>& meshes, bool end) {
-  auto frame = std::make_shared<Frame>();
-  frame->epoch = options_.epoch;
-  frame->sequence = simulation_->report().step;
-  frame->time_s = simulation_->report().time;
-  frame->end = end;
-  frame->fields = simulation_->frame(meshes);
-  return frame;
-}
-
-void Session::show_to_viewers() {
-  std::erase_if(viewers_, [](const auto& viewer) { return viewer->closed(); });
-  std::vector<std::shared_ptr<Viewer>> due;
-  std::set<std::string> meshes;
-  for (const auto& viewer : viewers_) {
-    if (!viewer->wants(simulation_->report().time)) continue;
-    due.push_back(viewer);
-    meshes.insert(viewer->meshes().begin(), viewer->meshes().end());
-  }
-  if (due.empty()) return;
-  const auto frame = make_frame({meshes.begin(), meshes.end()}, false);
-  for (const auto& viewer : due) viewer->offer(frame);
 }
 
 // ---- running

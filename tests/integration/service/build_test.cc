@@ -99,6 +99,50 @@ TEST_F(BuildTest, BuildsASquareAndShowsItsMeshes) {
   EXPECT_EQ(rows.count("scan.points"), 0u);
 }
 
+TEST_F(BuildTest, BuildsOnAScanAndMeasuresItsSkin) {
+  v1::Scan scan;
+  ASSERT_TRUE(upload("patients/anna", v1::OBJ, sheet_obj(60), scan).ok());
+  v1::ModelSpec spec = square_spec();
+  spec.mutable_scan_region()->set_scan(scan.name());
+  for (const auto& [x, y] : std::vector<std::pair<double, double>>{{25, 25}, {75, 25}, {75, 75}, {25, 75}}) {
+    auto* position = spec.mutable_scan_region()->add_corners()->mutable_position_mm();
+    position->set_x(x);
+    position->set_y(y);
+    position->set_z(4.5);
+  }
+  *spec.mutable_scan_region()->mutable_axes() =
+      parse_text<v1::HeadAxes>("left { x: 1 y: 0 z: 0 } up { x: 0 y: 1 z: 0 } forward { x: 0 y: 0 z: 1 }");
+  v1::Operation operation;
+  const grpc::Status built = build("patients/anna", spec, operation);
+  ASSERT_TRUE(built.ok()) << built.error_message();
+  v1::Model model;
+  ASSERT_TRUE(operation.response().UnpackTo(&model)) << operation.error().message();
+  EXPECT_GT(model.report().scan_vertices_in_patch(), 500u);
+  v1::DeleteScanRequest remove;
+  remove.set_name(scan.name());
+  google::protobuf::Empty nothing;
+  EXPECT_EQ(call(*patients_, &Patients::DeleteScan, remove, nothing).error_code(),
+            grpc::StatusCode::FAILED_PRECONDITION);
+
+  v1::Simulation simulation;
+  const grpc::Status created = create_simulation(square_plan(model.name(), 0.2), "x", true, simulation);
+  ASSERT_TRUE(created.ok()) << created.error_message();
+  simulation = await_end("simulations/x");
+  ASSERT_EQ(simulation.state(), v1::Simulation::FINISHED) << simulation.reason();
+  restart();
+  v1::EvaluateSimulationRequest evaluate;
+  evaluate.set_name("simulations/x");
+  evaluate.set_target_scan(scan.name());
+  v1::Evaluation evaluation;
+  const grpc::Status measured =
+      call(*simulations_, &v1::SimulationService::Stub::EvaluateSimulation, evaluate, evaluation);
+  ASSERT_TRUE(measured.ok()) << measured.error_message();
+  EXPECT_EQ(evaluation.mesh(), "scan");
+  EXPECT_EQ(static_cast<uint32_t>(evaluation.vertices_size()), model.report().scan_vertices_in_patch());
+  EXPECT_NEAR(evaluation.before_to_target().max_mm(), 0.0, 1e-6) << "the target is the scan itself";
+  EXPECT_GT(evaluation.simulated_to_target().max_mm(), 0.5 * simulation.summary().skin_max_displacement_mm());
+}
+
 TEST_F(BuildTest, IsIdempotentAlsoAfterARestart) {
   v1::Operation first, again;
   ASSERT_TRUE(call(*patients_, &Patients::BuildModel, request(square_spec(), "r1"), first).ok());

@@ -35,7 +35,7 @@ target_include_directories(lipofill_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_D
 target_link_libraries(lipofill_cholmod INTERFACE ${CHOLMOD_LIBRARY} ${OPENBLAS_LIBRARY} gomp)
 # CHOLMOD asks for libblas and liblapack by name and would take the machine's default. Ours, needed by the program itself, are loaded first
 # and stay in its place.
-get_filename_component(OPENBLAS_SERIAL_DIR ${OPENBLAS_SERIAL_LIBRARY} DIRECTORY)
+get_filename_component(OPENBLAS_DIR ${OPENBLAS_LIBRARY} DIRECTORY)
 target_link_libraries(lipofill_cholmod INTERFACE
-  ${OPENBLAS_SERIAL_DIR}/liblapack.so.3 ${OPENBLAS_SERIAL_DIR}/libblas.so.3)
-target_link_options(lipofill_cholmod INTERFACE -Wl,--no-as-needed -Wl,-rpath,${OPENBLAS_SERIAL_DIR})
+  ${OPENBLAS_DIR}/liblapack.so.3 ${OPENBLAS_DIR}/libblas.so.3)
+target_link_options(lipofill_cholmod INTERFACE -Wl,--no-as-needed -Wl,-rpath,${OPENBLAS_DIR})

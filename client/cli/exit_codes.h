@@ -25,7 +25,7 @@ inline constexpr char kExitCodeHelp[] =
     "  5    an internal error\n"
     "  130  interrupted\n";
 
-/// Checked by tests/unit/client/exit_codes_test.cc and, from the shell, tests/integration/cli/.
+/// Checked, from the shell, by tests/integration/cli/.
 ExitCode exit_code_of(const absl::Status& status);
 
 }  // namespace lipofill::client

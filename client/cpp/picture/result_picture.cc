@@ -41,6 +41,7 @@ using Surface = vtkSmartPointer<vtkPolyData>;
 
 constexpr int kWidth = 2100;
 constexpr int kHeight = 800;
+constexpr double kTitleStrip = 0.92;
 constexpr double kPanelWidth = 0.31;  // the rest is for the legend
 constexpr double kSkin[3] = {0.87, 0.70, 0.60};
 constexpr double kInk[3] = {0.12, 0.12, 0.14};
@@ -200,8 +201,8 @@ vtkSmartPointer<vtkRenderer> legend_panel(vtkColorTransferFunction* colours, con
 }
 
 /// One of the three views. `field` colours the surface; skin without one.
-vtkSmartPointer<vtkRenderer> panel(int place, const std::string& title, vtkPolyData* surface, const View& view,
-                                   vtkColorTransferFunction* colours, const char* field) {
+vtkSmartPointer<vtkRenderer> panel(int place, vtkPolyData* surface, const View& view, vtkColorTransferFunction* colours,
+                                   const char* field) {
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(surface);
   mapper->SetScalarVisibility(field != nullptr);
@@ -220,12 +221,21 @@ vtkSmartPointer<vtkRenderer> panel(int place, const std::string& title, vtkPolyD
   actor->GetProperty()->SetSpecular(field != nullptr ? 0.0 : 0.08);
   actor->GetProperty()->SetSpecularPower(20);
   auto renderer = vtkSmartPointer<vtkRenderer>::New();
-  renderer->SetViewport(place * kPanelWidth, 0.06, (place + 1) * kPanelWidth, 1.0);
+  renderer->SetViewport(place * kPanelWidth, 0.06, (place + 1) * kPanelWidth, kTitleStrip);
   renderer->SetBackground(1, 1, 1);
   renderer->AddActor(actor);
   set_lights(renderer);
   set_camera(view, renderer);
-  add_text(title, 30, 0.5, 0.93, true, renderer);
+  return renderer;
+}
+
+vtkSmartPointer<vtkRenderer> title_panel(const std::array<const char*, 3>& titles) {
+  auto renderer = vtkSmartPointer<vtkRenderer>::New();
+  renderer->SetViewport(0.0, kTitleStrip, 1.0, 1.0);
+  renderer->SetBackground(1, 1, 1);
+  for (size_t i = 0; i < titles.size(); ++i) {
+    add_text(titles[i], 30, (static_cast<double>(i) + 0.5) * kPanelWidth, 0.3, true, renderer);
+  }
   return renderer;
 }
 
@@ -262,10 +272,10 @@ absl::Status draw(const PictureRequest& request, vtkPolyData* after, const char*
   const Surface after_shaded = with_normals(after);
   const Surface before_shaded = with_normals(at_rest(after));
   const View view = view_of(before_shaded, weight, request.up);
-  return write_png(request.png, {panel(0, "Before", before_shaded, view, nullptr, nullptr),
-                                 panel(1, "After, simulated", after_shaded, view, nullptr, nullptr),
-                                 panel(2, third_title, after_shaded, view, colours, field),
-                                 legend_panel(colours, legend), caption_panel(request.caption)});
+  return write_png(request.png,
+                   {panel(0, before_shaded, view, nullptr, nullptr), panel(1, after_shaded, view, nullptr, nullptr),
+                    panel(2, after_shaded, view, colours, field), legend_panel(colours, legend),
+                    title_panel({"Before", "After, simulated", third_title}), caption_panel(request.caption)});
 }
 
 }  // namespace

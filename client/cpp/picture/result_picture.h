@@ -23,7 +23,7 @@ struct PictureRequest {
 /// Before, after and displacement side by side: three panels of one camera that looks from outside at what moved, the
 /// surface in the colour of skin, the displacement in mm with a legend. 2100 x 800 pixels. Draws off the screen, but
 /// needs an X server: without one VTK ends the process, so call it in a process of its own. INVALID_ARGUMENT for a mesh
-/// that cannot be read or has no displacement. Checked by tests/integration/cli/picture_test.cc.
+/// that cannot be read or has no displacement. Checked by tests/integration/cli/.
 absl::Status draw_result_picture(const PictureRequest& request);
 
 /// Before, after and the signed distance to the target (blue inside, red outside): the paper's Figure 2. Points whose

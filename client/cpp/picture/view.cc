@@ -73,7 +73,10 @@ View view_of(vtkPolyData* surface, const char* weight_name, const std::optional<
   }
   const double whole = 0.5 * surface->GetLength();
   view.half_height_mm = std::min(std::max(kSurroundings * radius, kLeastHalfHeight * whole), whole);
-  if (!up) view.half_height_mm = kPlateHalfHeight * whole;
+  if (!up) {
+    view.half_height_mm = kPlateHalfHeight * whole;
+    surface->GetCenter(view.focus.data());
+  }
   // A flat plate is seen at a slant, or its bulge would not show.
   const Vector upward = across(view.direction, up.value_or(Vector{0, 1, 0}));
   if (!up) {

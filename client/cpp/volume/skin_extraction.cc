@@ -16,6 +16,8 @@
 #include <vtkTransformPolyDataFilter.h>
 #include <vtkWindowedSincPolyDataFilter.h>
 
+#include <cmath>
+
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "client/cpp/io/vtk_messages.h"
@@ -34,10 +36,19 @@ Surface output_of(Filter* filter, vtkPolyData* input) {
   return filter->GetOutput();
 }
 
+/// The value in the voxels' own numbers. Between whole numbers where the voxels are whole: a corner on a voxel would be
+/// the corner of triangles without area, which nothing after this can mend.
+double voxel_value(const Volume& volume, double isovalue) {
+  const double value = (isovalue - volume.intercept) / volume.slope;
+  const int type = volume.voxels->GetScalarType();
+  const bool whole = type != VTK_FLOAT && type != VTK_DOUBLE;
+  return whole && value == std::floor(value) ? value + 0.5 : value;
+}
+
 Surface contour(const Volume& volume, double isovalue) {
   vtkNew<vtkFlyingEdges3D> contour;
   contour->SetInputData(volume.voxels);
-  contour->SetValue(0, (isovalue - volume.intercept) / volume.slope);
+  contour->SetValue(0, voxel_value(volume, isovalue));
   contour->ComputeNormalsOff();
   contour->ComputeScalarsOff();
   contour->Update();

@@ -1,0 +1,128 @@
+#include "client/cpp/frame_watcher.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "scripted_service.h"
+
+namespace lipofill::client {
+namespace {
+
+using ::testing::ElementsAre;
+using Writer = grpc::ServerWriter<v1::WatchResponse>;
+
+void send_meshes(Writer* writer) {
+  v1::WatchResponse response;
+  v1::MeshSlice* mesh = response.mutable_mesh();
+  mesh->set_topology_hash("hash");
+  v1::ArraySlice* array = mesh->add_arrays();
+  array->set_name("skin.points");
+  array->set_type(v1::FLOAT32);
+  array->set_location(v1::MESH);
+  array->add_shape(1);
+  array->add_shape(3);
+  const float point[] = {1, 2, 3};
+  array->set_data(point, 8);
+  writer->Write(response);
+  array->set_offset_bytes(8);
+  array->set_data(point + 2, 4);
+  mesh->set_last(true);
+  writer->Write(response);
+}
+
+void send_frame(Writer* writer, uint64_t sequence, bool end) {
+  v1::WatchResponse response;
+  v1::FrameSlice* frame = response.mutable_frame();
+  frame->set_epoch(9);
+  frame->set_sequence(sequence);
+  frame->set_time_s(0.01 * static_cast<double>(sequence));
+  frame->set_topology_hash("hash");
+  frame->set_last(true);
+  frame->set_end(end);
+  writer->Write(response);
+}
+
+class FrameWatcherTest : public ::testing::Test {
+ protected:
+  WatchHandlers handlers() {
+    WatchHandlers result;
+    result.on_meshes = [this](const Meshes& meshes) {
+      ++meshes_;
+      EXPECT_THAT(meshes.arrays.at(0).floats(), ElementsAre(1, 2, 3));
+      return absl::OkStatus();
+    };
+    result.on_frame = [this](const Frame& frame) {
+      frames_.push_back(frame.sequence);
+      return absl::OkStatus();
+    };
+    return result;
+  }
+
+  BreakingFrameService service_;
+  int meshes_ = 0;
+  std::vector<uint64_t> frames_;
+};
+
+TEST_F(FrameWatcherTest, TakesUpABrokenStreamAfterTheLastFrame) {
+  service_.streams = {[](const v1::WatchRequest&, Writer* writer) {
+                        send_meshes(writer);
+                        send_frame(writer, 1, false);
+                        send_frame(writer, 2, false);
+                        return grpc::Status(grpc::StatusCode::RESOURCE_EXHAUSTED, "too slow");
+                      },
+                      [](const v1::WatchRequest&, Writer* writer) {
+                        send_frame(writer, 3, true);
+                        return grpc::Status::OK;
+                      }};
+  const LocalServer server(&service_);
+  v1::WatchRequest request;
+  request.set_delivery(v1::WatchRequest::EVERY);
+  const absl::Status status = watch(Connection(server.address()), request, handlers());
+  EXPECT_TRUE(status.ok()) << status;
+  EXPECT_EQ(meshes_, 1);
+  EXPECT_THAT(frames_, ElementsAre(1u, 2u, 3u));
+  ASSERT_EQ(service_.requests.size(), 2u);
+  EXPECT_EQ(service_.requests[1].seen_epoch(), 9u);
+  EXPECT_EQ(service_.requests[1].seen_sequence(), 2u);
+  EXPECT_EQ(service_.requests[1].known_topology_hash(), "hash");
+}
+
+TEST_F(FrameWatcherTest, AnErrorOfTheSimulationIsNotRetried) {
+  service_.streams = {
+      [](const v1::WatchRequest&, Writer*) { return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such simulation"); }};
+  const LocalServer server(&service_);
+  EXPECT_TRUE(absl::IsNotFound(watch(Connection(server.address()), {}, handlers())));
+  EXPECT_EQ(service_.requests.size(), 1u);
+}
+
+TEST_F(FrameWatcherTest, AHandlersErrorEndsTheWatch) {
+  service_.streams = {[](const v1::WatchRequest&, Writer* writer) {
+    send_frame(writer, 1, false);
+    return grpc::Status(grpc::StatusCode::UNAVAILABLE, "gone");
+  }};
+  const LocalServer server(&service_);
+  WatchHandlers full = handlers();
+  full.on_frame = [](const Frame&) { return absl::InvalidArgumentError("the disk is full"); };
+  EXPECT_EQ(watch(Connection(server.address()), {}, full).message(), "the disk is full");
+}
+
+TEST_F(FrameWatcherTest, StopEndsAWatchThatWaits) {
+  std::stop_source stop;
+  service_.streams = {[&stop](const v1::WatchRequest&, Writer* writer) {
+    send_frame(writer, 1, false);
+    stop.request_stop();
+    for (int i = 0; i < 500; ++i) {
+      v1::WatchResponse nothing;
+      if (!writer->Write(nothing)) return grpc::Status::CANCELLED;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return grpc::Status::OK;
+  }};
+  const LocalServer server(&service_);
+  EXPECT_TRUE(absl::IsCancelled(watch(Connection(server.address(), stop.get_token()), {}, handlers())));
+}
+
+}  // namespace
+}  // namespace lipofill::client

@@ -1,0 +1,76 @@
+#include "client/cpp/result_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace lipofill::client {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+v1::Simulation sample() {
+  v1::Simulation simulation;
+  simulation.set_state(v1::Simulation::SETTLED);
+  simulation.set_reason("at rest");
+  v1::Summary* summary = simulation.mutable_summary();
+  summary->set_steps(120);
+  summary->set_injected_ml(4.5);
+  summary->set_max_pressure_pa(1333.22);
+  summary->set_min_pressure_pa(-std::numeric_limits<double>::infinity());
+  summary->set_state_hash("abc");
+  summary->add_zones()->set_name("masseter");
+  return simulation;
+}
+
+TEST(SummaryJson, HasTheKeysOthersRelyOn) {
+  const auto json = nlohmann::ordered_json::parse(summary_json("jaw_angle", sample()));
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.push_back(key);
+  EXPECT_THAT(keys, ElementsAre("plan", "state", "reason", "steps", "time_s", "wall_s", "step_ms_median", "hexahedra",
+                                "film_cells", "dofs", "injected_ml", "film_volume_ml", "gap_volume_ml",
+                                "film_volume_relative_error", "gap_volume_relative_error", "max_pressure_pa",
+                                "min_pressure_pa", "mean_pressure_pa", "max_thickness_mm", "skin_max_displacement_mm",
+                                "skin_volume_change_ml", "min_scaled_jacobian", "state_hash", "zones"));
+  keys.clear();
+  for (const auto& [key, value] : json["zones"][0].items()) keys.push_back(key);
+  EXPECT_THAT(keys, ElementsAre("name", "volume_ml", "mean_pressure_pa", "max_thickness_mm"));
+  EXPECT_EQ(json["plan"], "jaw_angle");
+  EXPECT_EQ(json["state"], "SETTLED");
+  EXPECT_EQ(json["steps"], 120);
+  EXPECT_EQ(json["injected_ml"], 4.5);
+  EXPECT_TRUE(json["min_pressure_pa"].is_null());
+}
+
+TEST(SummaryText, IsForPeople) {
+  const std::string text = summary_text("jaw_angle", sample());
+  EXPECT_THAT(text, HasSubstr("jaw_angle: SETTLED (at rest)"));
+  EXPECT_THAT(text, HasSubstr("4.500 mL injected"));
+  EXPECT_THAT(text, HasSubstr("10.0 mmHg"));
+  EXPECT_THAT(text, HasSubstr("Research and planning aid, not a medical device."));
+}
+
+TEST(SeriesCsv, NamesUnitsAndKeepsValues) {
+  v1::SimulationSpec spec;
+  spec.add_probes()->set_name("centre");
+  spec.add_probes()->set_name("edge");
+  v1::SeriesRow row;
+  row.set_step(7);
+  row.set_time_s(0.1);
+  row.set_injected_ml(1.0 / 3.0);
+  row.add_probe_thickness_mm(0.25);
+  row.add_probe_pressure_pa(12);
+  row.set_wall_ms(9);
+  EXPECT_EQ(
+      series_csv(spec, {row}),
+      "step,time_s,step_ms,injected_ml,film_volume_ml,gap_volume_ml,max_pressure_pa,min_pressure_pa,max_thickness_mm,"
+      "skin_max_displacement_mm,skin_speed_mm_per_s,probe_centre_thickness_mm,probe_centre_pressure_pa,"
+      "probe_edge_thickness_mm,probe_edge_pressure_pa,wall_ms\n"
+      "7,0.1,0,0.3333333333333333,0,0,0,0,0,0,0,0.25,12,,,9\n");
+}
+
+}  // namespace
+}  // namespace lipofill::client

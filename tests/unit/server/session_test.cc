@@ -164,6 +164,7 @@ TEST_F(SessionTest, ShowsFramesUntilTheEndAndAfterIt) {
 
   const auto late = std::make_shared<Viewer>(ViewerOptions{}, [] {});
   s->watch(late);
+  ASSERT_TRUE(inspect(*s).ok()) << "commands are carried out in order";
   EXPECT_TRUE(std::holds_alternative<TopologyToSend>(late->take()));
   EXPECT_TRUE(std::get<FrameToSend>(late->take()).frame->end);
 }

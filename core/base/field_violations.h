@@ -21,7 +21,7 @@ struct FieldViolation {
 ///     violations.check_range("time.step_ms", step_ms, 0.001, 10000, "ms");
 ///     return violations.to_status();
 ///
-/// Checked by tests/unit/base/field_violations_test.cc.
+/// Checked by tests/unit/base/base_test.cc.
 class FieldViolations {
  public:
   void add(std::string field, std::string description);

@@ -21,7 +21,7 @@ struct SplitMesh {
 /// @param open  a list a level of nodes_per_level flags: the node is doubled there; empty where no film lies at that
 /// level.
 ///              At the deepest level the outer copy is free and the inner copy is bone.
-/// Checked by tests/unit/coupling/split_mesh_test.cc.
+/// Checked by tests/unit/coupling/gap_volume_test.cc.
 SplitMesh split_mesh(const geometry::LayeredGrid& grid, const std::vector<std::vector<bool>>& open);
 
 }  // namespace lipofill::coupling

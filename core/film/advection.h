@@ -14,7 +14,7 @@ namespace lipofill::film {
 /// and made tangential where it arrives, which is parallel transport to second order. Unconditionally stable, first
 /// order in time.
 /// @param velocity  U, normal velocity times edge length [m2/s] (n_edges)
-/// Checked by tests/unit/film/advection_test.cc.
+/// Checked by tests/unit/film/motion_test.cc.
 Eigen::VectorXd advect_velocity(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& velocity,
                                 double dt);
 

@@ -16,7 +16,7 @@ namespace lipofill::film {
 ///
 /// @param h     film thickness [m] (n_cells), each >= 0
 /// @param flux  its sign tells which cell is upstream (n_edges); 0 counts as from left to right
-/// Checked by tests/unit/film/edge_thickness_test.cc.
+/// Checked by tests/unit/film/edge_operators_test.cc.
 Eigen::VectorXd compute_edge_thickness(const FilmGrid& grid, const Eigen::VectorXd& h, const Eigen::VectorXd& flux);
 
 }  // namespace lipofill::film

@@ -44,7 +44,7 @@ struct FilmGrid {
 };
 
 /// Numbers cells and edges. `zone_of_slot`: (n_xi * n_eta), -1 where there is no film.
-/// Checked by tests/unit/film/film_grid_test.cc.
+/// Checked by tests/unit/film/edge_operators_test.cc.
 FilmGrid make_film_grid(const geometry::ChartBox& extent, int n_xi, int n_eta, const std::vector<int>& zone_of_slot);
 
 }  // namespace lipofill::film

@@ -30,7 +30,7 @@ struct FilmMetric {
 };
 
 /// @param vertices  positions of all vertices of the grid, cells or not [m] (3, n_vertices)
-/// Second order on smooth charts. Checked by tests/unit/film/film_metric_test.cc.
+/// Second order on smooth charts. Checked by tests/unit/film/edge_operators_test.cc.
 FilmMetric compute_film_metric(const FilmGrid& grid, const Eigen::Matrix3Xd& vertices);
 
 /// The edges a quadrant touches (-1: sealed).

@@ -27,7 +27,7 @@ struct FilmStepInput {
 ///     V' = V + injected + dt G^T F
 ///
 /// so that V' = explicit_volume - dt J p, in flux form: what leaves a cell enters its neighbour, to the last bit but
-/// rounding. Checked by tests/unit/film/film_projection_test.cc.
+/// rounding. Checked by tests/unit/coupling/film_solve_test.cc.
 class FilmProjection {
  public:
   explicit FilmProjection(const FilmGrid& grid);

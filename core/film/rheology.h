@@ -17,7 +17,7 @@ double compute_friction_rate(const Fat& fat, double thickness);
 ///     k = h (dt/rho) / (1 + 12 mu dt / (rho h^2)) = h^3 / (12 mu + rho h^2 / dt)      [m3 / (Pa s)]
 ///
 /// which is Reynolds lubrication, h^3 / (12 mu), once friction outweighs inertia. 0 for a dry edge.
-/// Checked by tests/unit/film/rheology_test.cc and tests/verification/film/slot_test.cc.
+/// Checked by tests/unit/film/motion_test.cc and tests/verification/film/slot_test.cc.
 double compute_conductance(const Fat& fat, double thickness, double dt);
 
 }  // namespace lipofill::film

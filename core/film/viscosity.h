@@ -20,7 +20,7 @@ namespace lipofill::film {
 ///
 /// with D the net outflow of cells, K the circulation around vertices and M the kinetic metric of edge_operators.h.
 /// Sealed edges are free-slip side walls. First order in time, second in space on smooth charts. Checked by
-/// tests/verification/film/taylor_green_test.cc and tests/unit/film/viscosity_test.cc.
+/// tests/unit/film/motion_test.cc.
 class ImplicitViscosity {
  public:
   explicit ImplicitViscosity(const FilmGrid& grid);

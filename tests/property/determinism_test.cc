@@ -1,0 +1,82 @@
+// The same plan gives the same bytes: run again, after a snapshot, and from many threads at once.
+
+#include <gtest/gtest.h>
+
+#include <thread>
+#include <vector>
+
+#include "tests/unit/simulation/small_case.h"
+
+namespace lipofill::simulation {
+namespace {
+
+constexpr int kSteps = 25;
+
+std::string hash_after(Simulation& simulation, int steps) {
+  for (int k = 0; k < steps; ++k) simulation.advance_step();
+  return simulation.state_hash();
+}
+
+SimulationSpec plan_with_everything(CouplingMode coupling) {
+  SimulationSpec spec = make_small_plan();
+  spec.films[0].zones = {{"left", ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", ChartBox{0.5, 1.0, 0.0, 1.0}}};
+  spec.injections = {{"left", 0.1e-6, 1e-6, std::nullopt, std::nullopt},
+                     {"right", 0.1e-6, 2e-6, std::nullopt, geometry::ChartPoint{0.7, 0.5}}};
+  spec.coupling = coupling;
+  spec.gravity = {1.0, -9.81, 2.0};
+  spec.damping_mass = 1.0;
+  spec.damping_stiffness = 1e-3;
+  spec.max_step = 0.1;
+  return spec;
+}
+
+TEST(Determinism, ARunAgainGivesTheSameBytes) {
+  for (const CouplingMode coupling : {CouplingMode::kExact, CouplingMode::kLumped}) {
+    const SimulationSpec spec = plan_with_everything(coupling);
+    EXPECT_EQ(hash_after(*make_small_simulation(spec), kSteps), hash_after(*make_small_simulation(spec), kSteps));
+  }
+}
+
+TEST(Determinism, ManyThreadsAtOnceGiveTheSameBytes) {
+  const SimulationSpec spec = plan_with_everything(CouplingMode::kExact);
+  const std::string alone = hash_after(*make_small_simulation(spec), kSteps);
+  std::vector<std::string> hashes(6);
+  std::vector<std::thread> threads;
+  for (std::string& hash : hashes) {
+    threads.emplace_back([&hash, &spec] { hash = hash_after(*make_small_simulation(spec), kSteps); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const std::string& hash : hashes) EXPECT_EQ(hash, alone);
+}
+
+TEST(Snapshot, RestoredStepEqualsTheStepAtEveryPointOfARun) {
+  const SimulationSpec spec = plan_with_everything(CouplingMode::kExact);
+  const auto original = make_small_simulation(spec);
+  const auto restored = make_small_simulation(spec);
+  for (int k = 0; k < kSteps; ++k) {
+    ASSERT_TRUE(restored->restore(original->snapshot()).ok());
+    EXPECT_EQ(restored->state_hash(), original->state_hash());
+    original->advance_step();
+    restored->advance_step();
+    ASSERT_EQ(restored->state_hash(), original->state_hash()) << "step " << k;
+    EXPECT_EQ(restored->report().injected, original->report().injected);
+  }
+}
+
+TEST(Snapshot, RefusesWhatIsNotItsState) {
+  const auto simulation = make_small_simulation();
+  simulation->advance_step();
+  const std::string good = simulation->snapshot();
+  const std::string hash = simulation->state_hash();
+  for (const std::string& bad : {std::string(), std::string("x"), good.substr(0, good.size() - 1), good + "x",
+                                 "y" + good.substr(1), good.substr(0, 40)}) {
+    EXPECT_EQ(simulation->restore(bad).code(), absl::StatusCode::kDataLoss);
+    EXPECT_EQ(simulation->state_hash(), hash);
+  }
+  SimulationSpec other = make_small_plan();
+  other.films[0].n_xi = 5;
+  EXPECT_EQ(make_small_simulation(other)->restore(good).code(), absl::StatusCode::kDataLoss);
+}
+
+}  // namespace
+}  // namespace lipofill::simulation

@@ -1,0 +1,81 @@
+// The compliance of a real tissue: EXACT against a dense reference made without the solver, LUMPED against the row sums
+// of it.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cstdio>
+
+#include "core/coupling/coupled_factor.h"
+#include "core/coupling/film_solve.h"
+#include "core/simulation/coupled_step.h"
+#include "core/simulation/film_layout.h"
+#include "core/simulation/tissue_setup.h"
+#include "tests/unit/simulation/small_case.h"
+
+namespace lipofill::verification {
+namespace {
+
+/// A small two-layer tissue with one film, bent so that C has no symmetry to hide behind.
+struct TissueCase {
+  std::shared_ptr<const simulation::FaceModel> model = simulation::make_small_model();
+  std::vector<simulation::FilmLayout> films;
+  std::unique_ptr<simulation::TissueSetup> setup;
+  std::unique_ptr<coupling::GapVolume> gap;
+  Eigen::Matrix3Xd x;
+
+  TissueCase() {
+    films.push_back(*simulation::place_film(*model, simulation::make_small_plan().films[0]));
+    setup = std::make_unique<simulation::TissueSetup>(*simulation::set_up_tissue(*model, films, {}));
+    const auto& tissue = setup->tissue;
+    gap = std::make_unique<coupling::GapVolume>(model->geometry.grid, setup->walls[0], films[0].grid,
+                                                tissue.dof_of_component(), tissue.n_dofs());
+    x = tissue.mesh().rest_positions;
+    for (Eigen::Index n = 0; n < x.cols(); ++n) {
+      x(2, n) += 2e-3 * std::sin(80.0 * x(0, n)) * std::cos(60.0 * x(1, n)) * (1.0 + 30.0 * x(2, n));
+    }
+    setup->tissue.assemble(x, 0.01);
+    gap->evaluate(x);
+  }
+  Eigen::MatrixXd dense_compliance() const {
+    const Eigen::MatrixXd s = Eigen::MatrixXd(setup->tissue.system_matrix()).selfadjointView<Eigen::Lower>();
+    const Eigen::MatrixXd b = gap->derivative();
+    return b * s.llt().solve(b.transpose());
+  }
+};
+
+TEST(Compliance, ExactEqualsTheDenseReference) {
+  const TissueCase c;
+  coupling::CoupledFactor factor(c.setup->tissue.system_matrix(), c.gap->derivative());
+  ASSERT_TRUE(factor.factorise(c.setup->tissue.system_matrix(), c.gap->derivative()).ok());
+  const Eigen::MatrixXd reference = c.dense_compliance();
+  const double error = (factor.compliance() - reference).cwiseAbs().maxCoeff() / reference.cwiseAbs().maxCoeff();
+  std::printf("compliance of %d unknowns, %d cells: relative error %.2e\n", c.setup->tissue.n_dofs(),
+              static_cast<int>(reference.rows()), error);
+  EXPECT_LT(error, 1e-12);
+}
+
+TEST(Compliance, LumpedRowSumsKeepTheTotalVolumeAnyPressureMoves) {
+  // R_ii = sum_j C_ij, so that 1^T R p = 1^T C p for any p (C is symmetric).
+  const TissueCase c;
+  const Eigen::MatrixXd reference = c.dense_compliance();
+  coupling::CoupledFactor factor(c.setup->tissue.system_matrix(), c.gap->derivative());
+  ASSERT_TRUE(factor.factorise(c.setup->tissue.system_matrix(), c.gap->derivative()).ok());
+  const Eigen::VectorXd lumped = factor.compliance().rowwise().sum();
+  EXPECT_LT((lumped - reference.rowwise().sum()).cwiseAbs().maxCoeff(), 1e-11 * lumped.cwiseAbs().maxCoeff());
+  const Eigen::VectorXd p = Eigen::VectorXd::Random(lumped.size());
+  EXPECT_NEAR(lumped.dot(p), (reference * p).sum(), 1e-11 * lumped.cwiseAbs().dot(p.cwiseAbs()));
+}
+
+TEST(Compliance, DryCellsAreHeldShutByTheSmallestEigenvalue) {
+  // With film cells twice as coarse as the wall there is no checkerboard of pressure that no wall feels: without any
+  // fluid, J = 0, C alone is definite.
+  const TissueCase c;
+  const Eigen::VectorXd eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(c.dense_compliance()).eigenvalues();
+  std::printf("eigenvalues of C: %.3e to %.3e m3/Pa\n", eigenvalues.minCoeff(), eigenvalues.maxCoeff());
+  EXPECT_GT(eigenvalues.minCoeff(), 1e-5 * eigenvalues.maxCoeff());
+}
+
+}  // namespace
+}  // namespace lipofill::verification

@@ -18,7 +18,7 @@ using Vector = std::array<double, 3>;
 // much.
 constexpr double kSurroundings = 2.0;
 constexpr double kPlateHalfHeight = 0.9;   // of the same: a plate is shown whole
-constexpr double kLeastHalfHeight = 0.35;  // of the half diagonal of the whole surface
+constexpr double kLeastHalfHeight = 80.0;  // [mm]: a cheek with nose and ear
 
 std::vector<double> weights_of(vtkPolyData* surface, const char* name) {
   vtkDataArray* field = surface->GetPointData()->GetArray(name);
@@ -72,7 +72,7 @@ View view_of(vtkPolyData* surface, const char* weight_name, const std::optional<
     radius = std::max(radius, std::sqrt(vtkMath::Distance2BetweenPoints(point, view.focus.data())));
   }
   const double whole = 0.5 * surface->GetLength();
-  view.half_height_mm = std::min(std::max(kSurroundings * radius, kLeastHalfHeight * whole), whole);
+  view.half_height_mm = std::min(std::max(kSurroundings * radius, kLeastHalfHeight), whole);
   if (!up) {
     view.half_height_mm = kPlateHalfHeight * whole;
     surface->GetCenter(view.focus.data());

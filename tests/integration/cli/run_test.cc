@@ -1,0 +1,145 @@
+// `lipofill run` with a daemon of its own: everything a user gets from one command.
+
+#include <signal.h>
+#include <vtkCellData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLUnstructuredGridReader.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "tests/integration/cli/cli_fixture.h"
+
+namespace lipofill::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+class RunTest : public CliTest {
+ protected:
+  /// Ends once `name` is there, or after some time.
+  void wait_for_file(const std::string& name) const {
+    for (int i = 0; i < 1000 && !exists(name); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ASSERT_TRUE(exists(name)) << name;
+  }
+};
+
+TEST_F(RunTest, WritesWhatParaViewOpens) {
+  const CommandResult result = run("lipofill run plan.json --out out --spawn --no-picture");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("0.300 mL injected"));
+  EXPECT_THAT(result.output, HasSubstr("Research and planning aid, not a medical device."));
+  for (const char* name :
+       {"skin_0000.vtp", "skin_0005.vtp", "film_0005.vtp", "tissue_0005.vtu", "skin.pvd", "film.pvd", "tissue.pvd"}) {
+    EXPECT_TRUE(exists(std::string("out/") + name)) << name;
+  }
+  EXPECT_THAT(read("out/skin.pvd"), HasSubstr("timestep=\"0\""));
+  EXPECT_THAT(read("out/skin.pvd"), HasSubstr("timestep=\"0.5\""));
+
+  vtkNew<vtkXMLPolyDataReader> skin;
+  skin->SetFileName((folder_ / "out/skin_0005.vtp").c_str());
+  skin->Update();
+  ASSERT_EQ(skin->GetOutput()->GetNumberOfPoints(), 13 * 13);
+  double range[2];
+  skin->GetOutput()->GetPointData()->GetArray("displacement_mm")->GetRange(range, 2);
+  const auto summary = read_json("out/summary.json");
+  EXPECT_NEAR(range[1], summary["skin_max_displacement_mm"].get<double>(), 0.2);
+  ASSERT_NE(skin->GetOutput()->GetPointData()->GetArray("pressure_pa"), nullptr);
+
+  vtkNew<vtkXMLPolyDataReader> film;
+  film->SetFileName((folder_ / "out/film_0005.vtp").c_str());
+  film->Update();
+  vtkCellData* cells = film->GetOutput()->GetCellData();
+  for (const char* name : {"thickness_mm", "pressure_pa", "velocity_mm_per_s", "wet"})
+    EXPECT_NE(cells->GetArray(name), nullptr) << name;
+  cells->GetArray("thickness_mm")->GetRange(range);
+  EXPECT_NEAR(range[1], summary["max_thickness_mm"].get<double>(), 1e-5);
+
+  vtkNew<vtkXMLUnstructuredGridReader> tissue;
+  tissue->SetFileName((folder_ / "out/tissue_0005.vtu").c_str());
+  tissue->Update();
+  EXPECT_EQ(tissue->GetOutput()->GetNumberOfCells(), 144);
+}
+
+TEST_F(RunTest, SummaryAndSeriesAgreeAndTwoRunsAreTheSame) {
+  const auto summary = answer_of("lipofill run plan.json --out a --spawn --no-picture --quiet");
+  EXPECT_EQ(summary, read_json("a/summary.json"));
+  EXPECT_EQ(summary["plan"], "square");
+  EXPECT_EQ(summary["state"], "FINISHED");
+  EXPECT_EQ(summary["steps"], 50);
+  EXPECT_NEAR(summary["injected_ml"].get<double>(), 0.3, 1e-12);
+  EXPECT_LT(summary["film_volume_relative_error"].get<double>(), 1e-10);
+  EXPECT_LT(summary["gap_volume_relative_error"].get<double>(), 1e-4);
+  EXPECT_EQ(summary["zones"][0]["name"], "middle");
+
+  const std::string series = read("a/series.csv");
+  EXPECT_EQ(std::count(series.begin(), series.end(), '\n'), 51);
+  EXPECT_THAT(series, ::testing::StartsWith("step,time_s,"));
+  EXPECT_THAT(series, HasSubstr("probe_centre_thickness_mm"));
+
+  const auto again = answer_of("lipofill run plan.json --out b --spawn --no-picture --quiet --interval-ms 0");
+  EXPECT_EQ(again["state_hash"], summary["state_hash"]);
+  EXPECT_EQ(again["state_hash"].get<std::string>().size(), 64u);
+  EXPECT_TRUE(exists("b/skin_0001.vtp"));
+  EXPECT_FALSE(exists("b/skin_0002.vtp"));
+}
+
+TEST_F(RunTest, DrawsAndEvaluatesTheFolder) {
+  write_plane("goal.obj", 1.0);
+  const CommandResult made = run("lipofill run plan.json --out out --spawn");
+  ASSERT_EQ(made.exit_code, 0) << made.errors;
+  EXPECT_EQ(read("out/picture.png").substr(1, 3), "PNG") << made.errors;
+
+  const auto evaluation = answer_of("lipofill evaluate out --target goal.obj");
+  // The square's skin lies at z = 0 before, everywhere 1 mm from the goal.
+  EXPECT_NEAR(evaluation["before_to_target"]["max_mm"].get<double>(), 1.0, 1e-6);
+  EXPECT_EQ(evaluation["points"], 13 * 13);
+  EXPECT_EQ(evaluation, read_json("out/evaluation.json"));
+  EXPECT_EQ(read("out/distance.png").substr(1, 3), "PNG");
+
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName((folder_ / "out/distance.vtp").c_str());
+  reader->Update();
+  vtkDataArray* distance = reader->GetOutput()->GetPointData()->GetArray("distance_mm");
+  ASSERT_NE(distance, nullptr);
+  double squares = 0.0;
+  for (vtkIdType i = 0; i < distance->GetNumberOfTuples(); ++i) squares += std::pow(distance->GetComponent(i, 0), 2);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(distance->GetNumberOfTuples())),
+              evaluation["simulated_to_target"]["rms_mm"].get<double>(), 1e-3);
+  // At the clamped rim the skin is still at 0, below the goal.
+  EXPECT_NEAR(distance->GetComponent(0, 0), -1.0, 1e-5);
+}
+
+TEST_F(RunTest, DiscardLeavesOnlyTheFiles) {
+  ASSERT_EQ(run("lipofill run plan.json --out out --spawn --discard --no-picture --quiet").exit_code, 0);
+  EXPECT_FALSE(exists("out/.lipofilld"));
+  EXPECT_TRUE(exists("out/summary.json"));
+  write_plane("goal.obj", 1.0);
+  const CommandResult result = run("lipofill evaluate out --target goal.obj");
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.errors, HasSubstr("did not keep its simulation"));
+}
+
+TEST_F(RunTest, InterruptStopsTheSimulationAndTheDaemon) {
+  write_plan("long.json", "/simulation/time/end_s", 100000.0);
+  Command command(in_folder("lipofill run long.json --out out --spawn --no-picture"));
+  wait_for_file("out/skin_0002.vtp");
+  command.signal(SIGINT);
+  const CommandResult result = command.wait();
+  EXPECT_EQ(result.exit_code, 130) << result.errors;
+  EXPECT_THAT(result.errors, HasSubstr("interrupted"));
+  EXPECT_EQ(read_json("out/summary.json")["state"], "STOPPED");
+  // The private daemon is gone: its folder can be served by another.
+  write_plane("goal.obj", 1.0);
+  const CommandResult evaluated = run("lipofill evaluate out --target goal.obj");
+  EXPECT_EQ(evaluated.exit_code, 0) << evaluated.errors;
+}
+
+}  // namespace
+}  // namespace lipofill::testing

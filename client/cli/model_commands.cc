@@ -120,8 +120,8 @@ void add_model_commands(CLI::App& root, Application& application) {
       ->add_option("patient", options->patient, "patients/ID, or the ID alone")
       ->required();
   add_named("get", "Show a model", "  lipofill model get patients/case-7/models/abc\n", get);
-  add_named("delete", "Delete a model that no simulation uses", "  lipofill model delete patients/case-7/models/abc\n",
-            remove);
+  add_named("delete", "Delete a model; its simulations keep their results",
+            "  lipofill model delete patients/case-7/models/abc\n", remove);
   add_named("mesh", "Write a model's meshes at rest for ParaView",
             "  lipofill model mesh patients/case-7/models/abc --out rest\n", mesh)
       ->add_option("--out", options->out, "folder")

@@ -78,12 +78,12 @@ absl::StatusOr<RunRecord> record_of_simulation(const Connection& connection, con
   v1::GetModelRequest request;
   request.set_name(simulation.spec().model());
   const auto model = connection.call<v1::PatientService>(&v1::PatientService::Stub::GetModel, request);
-  if (!model.ok()) return model.status();
+  if (!model.ok() && !absl::IsNotFound(model.status())) return model.status();
   RunRecord record;
   record.plan = simulation.display_name();
   record.simulation = simulation.name();
   record.server = connection.server();
-  record.up = up_of(model->spec().scan_region());
+  if (model.ok()) record.up = up_of(model->spec().scan_region());
   return record;
 }
 

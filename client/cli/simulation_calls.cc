@@ -36,13 +36,14 @@ absl::Status fetch_series(const Connection& connection, const std::string& simul
 }
 
 absl::StatusOr<std::vector<std::string>> mesh_names(const Connection& connection, const v1::Simulation& simulation) {
+  std::vector<std::string> names = {"skin"};
+  for (const v1::Film& film : simulation.spec().films()) names.push_back(absl::StrCat("film/", film.name()));
   v1::GetModelRequest request;
   request.set_name(simulation.spec().model());
   const auto model = connection.call<v1::PatientService>(&v1::PatientService::Stub::GetModel, request);
+  if (absl::IsNotFound(model.status())) return names;
   if (!model.ok()) return model.status();
-  std::vector<std::string> names = {"skin"};
   if (model->spec().has_scan_region()) names.push_back("scan");
-  for (const v1::Film& film : simulation.spec().films()) names.push_back(absl::StrCat("film/", film.name()));
   if (model->spec().layers_size() > 0) names.push_back("tissue");
   return names;
 }

@@ -18,7 +18,7 @@ using Vector = std::array<double, 3>;
 // much.
 constexpr double kSurroundings = 2.0;
 constexpr double kPlateHalfHeight = 0.9;   // of the same: a plate is shown whole
-constexpr double kLeastHalfHeight = 80.0;  // [mm]: a cheek with nose and ear
+constexpr double kLeastHalfHeight = 92.0;  // [mm]: a cheek with nose and ear
 
 std::vector<double> weights_of(vtkPolyData* surface, const char* name) {
   vtkDataArray* field = surface->GetPointData()->GetArray(name);

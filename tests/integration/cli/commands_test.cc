@@ -93,7 +93,11 @@ TEST_F(CommandsTest, ModelAndSimulationStepByStep) {
   EXPECT_EQ(ask("simulation list")["simulations"].size(), 1u);
   EXPECT_GT(ask("simulation series s")["rows"].size(), 0u);
   EXPECT_THAT(tell("simulation series s").output, ::testing::StartsWith("step,time_s,"));
-  EXPECT_EQ(tell("model delete " + model_name).exit_code, 4);
+  ask("model delete " + model_name);
+  EXPECT_EQ(tell("model get " + model_name).exit_code, 4);
+  // The simulation outlives its model.
+  ask("export s --out late");
+  EXPECT_EQ(read_json("late/summary.json")["state"], "STOPPED");
   ask("simulation delete s");
   EXPECT_EQ(tell("simulation get s").exit_code, 4);
   EXPECT_EQ(tell("watch s").exit_code, 4);

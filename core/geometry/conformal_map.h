@@ -15,7 +15,7 @@ namespace lipofill::geometry {
 /// with vertices `pin_a` and `pin_b` held apart by their distance. Preserves orientation; borders are free; holes may
 /// stay open.
 /// @return (2, n_vertices) [m]. FAILED_PRECONDITION where the system is singular.
-/// Checked by tests/unit/geometry/conformal_map_test.cc.
+/// Checked by tests/unit/geometry/chart_test.cc.
 absl::StatusOr<Eigen::Matrix2Xd> compute_conformal_map(const SurfaceMesh& mesh, int pin_a, int pin_b);
 
 /// Map with mean-value weights (Floater 2003) of a patch whose longest border goes to a circle: free of folds on any

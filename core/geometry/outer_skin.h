@@ -13,7 +13,7 @@ namespace lipofill::geometry {
 /// shell under the skin look at each other and fail. Hidden islands of less than 1 cm2 in the middle of outer skin (the
 /// bottom of a crease) count as skin.
 /// @return a flag a triangle of the mesh; false for all that are no candidates
-/// Checked by tests/unit/geometry/outer_skin_test.cc.
+/// Checked by tests/unit/geometry/chart_test.cc.
 std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across, const RayTree& rays,
                                   const std::vector<int>& candidates);
 

@@ -126,6 +126,19 @@ TEST_F(RunTest, DiscardLeavesOnlyTheFiles) {
   EXPECT_THAT(result.errors, HasSubstr("did not keep its simulation"));
 }
 
+TEST_F(RunTest, AFailedSimulationIsAResultWithExitCode1) {
+  // Far more than the plane holds, at once.
+  write_plan("burst.json", "/simulation/injections/0",
+             {{"zone", "middle"}, {"volume_ml", 9.0}, {"rate_ml_per_s", 900.0}});
+  const CommandResult result = run("lipofill run burst.json --out out --spawn --no-picture");
+  EXPECT_EQ(result.exit_code, 1) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("square: FAILED ("));
+  const auto summary = read_json("out/summary.json");
+  EXPECT_EQ(summary["state"], "FAILED");
+  EXPECT_NE(summary["reason"], "");
+  EXPECT_TRUE(exists("out/skin_0000.vtp"));
+}
+
 TEST_F(RunTest, InterruptStopsTheSimulationAndTheDaemon) {
   write_plan("long.json", "/simulation/time/end_s", 100000.0);
   Command command(in_folder("lipofill run long.json --out out --spawn --no-picture"));

@@ -2,23 +2,36 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
+#include <cmath>
 
 namespace lipofill::geometry {
 
-double compute_scaled_jacobian(const Eigen::Matrix<double, 3, 8>& x) {
-  // For each corner the neighbours along xi, eta, zeta, and on which side of them it lies.
-  constexpr std::array<std::array<int, 3>, 8> kNeighbours = {
-      {{1, 3, 4}, {0, 2, 5}, {3, 1, 6}, {2, 0, 7}, {5, 7, 0}, {4, 6, 1}, {7, 5, 2}, {6, 4, 3}}};
-  constexpr std::array<double, 8> kHandedness = {1, -1, 1, -1, -1, 1, -1, 1};
-  double worst = 1.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    Eigen::Matrix3d edges;
-    for (int k = 0; k < 3; ++k) edges.col(k) = (x.col(kNeighbours[corner][k]) - x.col(corner)).normalized();
-    const double determinant = kHandedness[corner] * edges.determinant();
-    worst = determinant < worst || determinant != determinant ? determinant : worst;
+namespace {
+
+/// The neighbours of each corner, so ordered that a positively oriented element has a positive determinant.
+constexpr int kNeighbours[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
+                                   {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
+
+double normalised_determinant(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+  const double product = a.squaredNorm() * b.squaredNorm() * c.squaredNorm();
+  if (!(product > 0.0) || !std::isfinite(product)) return -1.0;
+  return a.cross(b).dot(c) / std::sqrt(product);
+}
+
+}  // namespace
+
+double compute_scaled_jacobian(const Eigen::Matrix<double, 3, 8>& nodes) {
+  const Eigen::Vector3d xi = nodes.col(1) + nodes.col(2) + nodes.col(5) + nodes.col(6) - nodes.col(0) - nodes.col(3) -
+                             nodes.col(4) - nodes.col(7);
+  const Eigen::Vector3d eta = nodes.col(2) + nodes.col(3) + nodes.col(6) + nodes.col(7) - nodes.col(0) - nodes.col(1) -
+                              nodes.col(4) - nodes.col(5);
+  const Eigen::Vector3d zeta = nodes.rightCols<4>().rowwise().sum() - nodes.leftCols<4>().rowwise().sum();
+  double least = normalised_determinant(xi, eta, zeta);
+  for (int a = 0; a < 8; ++a) {
+    const auto edge = [&](int k) -> Eigen::Vector3d { return nodes.col(kNeighbours[a][k]) - nodes.col(a); };
+    least = std::min(least, normalised_determinant(edge(0), edge(1), edge(2)));
   }
-  return worst;
+  return least;
 }
 
 namespace {

@@ -6,11 +6,12 @@
 
 namespace lipofill::geometry {
 
-/// Scaled Jacobian of a hexahedron: the smallest over its eight corners of the determinant of the unit vectors along
-/// the three edges there. In [-1, 1]; 1 is a cuboid, not positive is folded.
-/// @param x  (3, 8) corners in the order of solid::HexMesh: deep face 0-3, outer face 4-7, anticlockwise seen from
-/// outside
-double compute_scaled_jacobian(const Eigen::Matrix<double, 3, 8>& x);
+/// Scaled Jacobian of a hexahedron: the least, over its corners and its centre, of the determinant of the three
+/// normalised edge (at the centre: principal axis) vectors. 1 for a cuboid, not positive when the element is folded, -1
+/// when an edge has no length or a position is not finite. As Verdict defines it (Stimpson et al. 2007).
+/// @param nodes  (3, 8) in the order of solid::HexMesh: deep face 0-3, outer face 4-7, anticlockwise seen from outside
+/// Checked by tests/unit/solid/hex_quality_test.cc and tests/unit/geometry/chart_test.cc.
+double compute_scaled_jacobian(const Eigen::Matrix<double, 3, 8>& nodes);
 
 /// The worst hexahedron of a grid, one turned over against its outer face counting as folded.
 struct WorstHexahedron {

@@ -64,6 +64,57 @@ class DistanceSigner {
   Across across_;
 };
 
+/// Vertices of the triangles of `target` that are nearest to the vertices of `patch`, ascending.
+std::vector<int> find_facing_vertices(const SurfaceMesh& patch, const SurfaceMesh& target) {
+  std::vector<bool> facing(target.n_vertices(), false);
+  const SurfaceLocator locator(target);
+  for (int v = 0; v < patch.n_vertices(); ++v) {
+    for (const int w : target.triangles[locator.find_nearest(patch.points.col(v)).triangle]) facing[w] = true;
+  }
+  std::vector<int> vertices;
+  for (int w = 0; w < target.n_vertices(); ++w) {
+    if (facing[w]) vertices.push_back(w);
+  }
+  return vertices;
+}
+
+/// The vertices each vertex shares a triangle with; some more than once.
+std::vector<std::vector<int>> list_neighbours(const SurfaceMesh& mesh) {
+  std::vector<std::vector<int>> beside(mesh.n_vertices());
+  for (const auto& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      beside[t[k]].push_back(t[(k + 1) % 3]);
+      beside[t[k]].push_back(t[(k + 2) % 3]);
+    }
+  }
+  return beside;
+}
+
+/// Nearest points on the patch of the part of the target that lies over it: from the vertices the patch is nearest to,
+/// along edges, as far as the nearest point stays off the patch's border. The far side of the head, whose nearest point
+/// may be in the patch's inside as well, is not reached.
+std::vector<SurfacePoint> find_opposite_vertices(const SurfaceMesh& patch, const SurfaceMesh& target) {
+  const SurfaceLocator locator(patch);
+  const DistanceSigner signer(patch);
+  const std::vector<bool> border = signer.find_border_vertices();
+  const std::vector<std::vector<int>> beside = list_neighbours(target);
+  std::vector<int> front = find_facing_vertices(patch, target);
+  std::vector<bool> seen(target.n_vertices(), false);
+  for (const int v : front) seen[v] = true;
+  std::vector<SurfacePoint> opposite;
+  for (size_t k = 0; k < front.size(); ++k) {
+    const SurfacePoint nearest = locator.find_nearest(target.points.col(front[k]));
+    if (signer.is_on_border(nearest, border)) continue;
+    opposite.push_back(nearest);
+    for (const int v : beside[front[k]]) {
+      if (seen[v]) continue;
+      seen[v] = true;
+      front.push_back(v);
+    }
+  }
+  return opposite;
+}
+
 }  // namespace
 
 std::vector<double> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface) {
@@ -98,15 +149,9 @@ PatchDistance compute_patch_distance(const SurfaceMesh& patch, const SurfaceMesh
   PatchDistance result;
   result.patch_to_target = compute_signed_distances(patch.points, target);
   result.patch_to_target_statistics = compute_distance_statistics(result.patch_to_target);
-  if (patch.triangles.empty()) return result;
-  const SurfaceLocator locator(patch);
-  const DistanceSigner signer(patch);
-  const std::vector<bool> border = signer.find_border_vertices();
+  if (patch.triangles.empty() || target.triangles.empty()) return result;
   std::vector<double> target_to_patch;
-  for (int v = 0; v < target.n_vertices(); ++v) {
-    const SurfacePoint nearest = locator.find_nearest(target.points.col(v));
-    if (!signer.is_on_border(nearest, border)) target_to_patch.push_back(nearest.distance);
-  }
+  for (const SurfacePoint& nearest : find_opposite_vertices(patch, target)) target_to_patch.push_back(nearest.distance);
   result.target_to_patch_statistics = compute_distance_statistics(target_to_patch);
   return result;
 }

@@ -25,7 +25,8 @@ DistanceStatistics compute_distance_statistics(const std::vector<double>& distan
 struct PatchDistance {
   std::vector<double> patch_to_target;  ///< signed, a value a patch vertex [m]
   DistanceStatistics patch_to_target_statistics;
-  /// From those vertices of the target whose nearest point of `patch` is in its inside, not on its border.
+  /// From those vertices of the target whose nearest point of `patch` is in its inside, not on its border, and that
+  /// hang together with the place on the target the patch is nearest to: the far side of a head is not compared.
   DistanceStatistics target_to_patch_statistics;
 };
 

@@ -13,8 +13,8 @@
 namespace lipofill::simulation {
 namespace {
 
-/// A step that does not converge is tried again at half its size, this often.
-constexpr int kMaxHalvings = 10;
+/// A step that does not converge is tried again at half its size, down to this share of the plan's step.
+constexpr double kSmallestStepShare = 1.0 / 1024.0;
 constexpr double kStepGrowth = 1.25;
 /// A step grows only when the last one was easy.
 constexpr int kEasyFilmIterations = 30;
@@ -111,14 +111,14 @@ void Simulation::advance_step() {
 StepOutcome Simulation::Impl::try_with_smaller_steps() {
   const std::vector<double> delivered = schedule.delivered_each();
   const double total = schedule.delivered();
-  double dt = state.next_step;
+  const double smallest = spec.step * kSmallestStepShare;
   StepOutcome outcome;
-  for (int halving = 0; halving <= kMaxHalvings; ++halving, dt *= 0.5) {
+  for (double dt = std::max(state.next_step, smallest); dt >= smallest; dt *= 0.5) {
     outcome = stepper->try_step(state, schedule.deliver(films, state.time, dt), dt);
     if (outcome.accepted) return outcome;
     schedule.restore_delivered(delivered, total);
   }
-  outcome.reason = absl::StrCat("at ", state.time, " s, with steps down to ", 2e3 * dt, " ms: ", outcome.reason);
+  outcome.reason = absl::StrCat("at ", state.time, " s, with steps down to ", smallest * 1e3, " ms: ", outcome.reason);
   return outcome;
 }
 

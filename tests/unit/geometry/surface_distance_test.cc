@@ -70,5 +70,13 @@ TEST(SurfaceDistance, OfAPatchLeavesOutWhatLiesBesideIt) {
   EXPECT_NEAR(distance.target_to_patch_statistics.rms, 0.004, 1e-9);
 }
 
+TEST(SurfaceDistance, OfAPatchLeavesOutTheFarSideOfAClosedTarget) {
+  const SurfaceMesh whole = make_sphere(0.05, 24);
+  SurfaceMesh cap = make_sphere(0.052, 24);
+  std::erase_if(cap.triangles, [&](const std::array<int, 3>& t) { return cap.points(2, t[0]) < 0.04; });
+  const PatchDistance distance = compute_patch_distance(cap, whole);
+  EXPECT_NEAR(distance.target_to_patch_statistics.max, 0.002, 1e-4);
+}
+
 }  // namespace
 }  // namespace lipofill::geometry

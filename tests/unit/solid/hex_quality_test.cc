@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/solid/hex_shape.h"
 #include "tests/unit/solid/box_mesh.h"
 
 namespace lipofill::solid::testing {

@@ -25,8 +25,8 @@ struct RegionRow {
 /// Placed on the skin over the structure each is named after; sizes are assumed.
 const std::vector<RegionRow>& rows() {
   static const std::vector<RegionRow> table = {
-      {"masseter", {{"zygion", 0.50}, {"gonion", 0.40}, {"cheilion", 0.10}}, 0, 0, "gonion", "zygion", 28, 22},
-      {"mandibular_angle", {{"gonion", 0.80}, {"cheilion", 0.20}}, 0, 0, "gonion", "cheilion", 32, 17},
+      {"masseter", {{"zygion", 0.50}, {"gonion", 0.40}, {"cheilion", 0.10}}, 0, 0, "gonion", "zygion", 30, 23},
+      {"mandibular_angle", {{"gonion", 0.80}, {"cheilion", 0.20}}, 0, 0, "gonion", "cheilion", 34, 20},
       {"malar", {{"zygion", 0.45}, {"exocanthion", 0.35}, {"cheilion", 0.20}}, 0, 0, "zygion", "cheilion", 22, 14},
       {"temple", {{"zygion", 0.5}, {"exocanthion", 0.5}}, 18, -8, "zygion", "exocanthion", 18, 16},
       {"nasolabial", {{"cheilion", 0.6}, {"exocanthion", 0.4}}, 0, 0, "cheilion", "exocanthion", 20, 8},

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -111,6 +112,7 @@ void CoupledFactor::Impl::analyse(const Sparse& s) {
   tissue.xtype = CHOLMOD_PATTERN;
   tissue.sorted = tissue.packed = 1;
   cholmod_factor* tissue_factor = cholmod_analyze(&tissue, &common);
+  if (tissue_factor == nullptr) return;
   std::vector<int> order(static_cast<int*>(tissue_factor->Perm), static_cast<int*>(tissue_factor->Perm) + n_dofs);
   cholmod_free_factor(&tissue_factor, &common);
   for (int cell = 0; cell < n_cells; ++cell) order.push_back(n_dofs + cell);
@@ -122,12 +124,13 @@ void CoupledFactor::Impl::analyse(const Sparse& s) {
     return std::all_of(order_used + n_dofs, order_used + n_dofs + n_cells, [&](int k) { return k >= n_dofs; });
   };
   factor = cholmod_analyze_p(matrix, order.data(), nullptr, 0, &common);
-  if (!pressures_are_last()) {
+  if (factor != nullptr && !pressures_are_last()) {
     // Postordering may move pressures forward when the tissue falls into pieces; the order given is valid as it is.
     cholmod_free_factor(&factor, &common);
     common.postorder = 0;
     factor = cholmod_analyze_p(matrix, order.data(), nullptr, 0, &common);
   }
+  if (factor == nullptr) return;
   const int* order_used = static_cast<int*>(factor->Perm);
   for (int k = 0; k < n_cells; ++k) cell_of_last.push_back(order_used[n_dofs + k] - n_dofs);
 }
@@ -204,6 +207,11 @@ CoupledFactor::CoupledFactor(const Sparse& s, const Sparse& b) : impl_(std::make
 }
 
 CoupledFactor::~CoupledFactor() = default;
+
+double CoupledFactor::factor_bytes() const {
+  if (impl_->factor == nullptr) return std::numeric_limits<double>::infinity();
+  return static_cast<double>(impl_->factor->xsize) * sizeof(double);
+}
 
 absl::Status CoupledFactor::factorise(const Sparse& s, const Sparse& b) {
   Impl& impl = *impl_;

@@ -27,6 +27,9 @@ class CoupledFactor {
   /// n_dofs).
   CoupledFactor(const Eigen::SparseMatrix<double>& s, const Eigen::SparseMatrix<double>& b);
   ~CoupledFactor();
+
+  /// Memory that the factor takes [bytes], known before the first factorise; infinite when the analysis itself failed.
+  double factor_bytes() const;
   CoupledFactor(const CoupledFactor&) = delete;
   CoupledFactor& operator=(const CoupledFactor&) = delete;
 

@@ -1,13 +1,11 @@
 #include "core/simulation/coupled_step.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/base/field_violations.h"
 #include "core/film/advection.h"
 #include "core/film/edge_operators.h"
 #include "core/film/edge_thickness.h"
@@ -22,181 +20,12 @@ constexpr double kGapTolerance = 2e-5;
 /// C has negative entries on curved layers; a lumped cell keeps at least this share of its own compliance, so that J +
 /// R stays definite.
 constexpr double kLeastLumpedShare = 1e-3;
-constexpr int kOpeningLoadSteps = 8;
-constexpr int kMaxOpeningIterations = 40;
-constexpr double kOpeningTolerance = 1e-8;
-constexpr double kIntermediateOpeningTolerance = 1e-3;
-/// Opening is quasi-static: inertia over this long a step only keeps S regular [s].
-constexpr double kOpeningStep = 1.0;
 
 film::Fat fat_in(const FilmLayout& film, double viscosity, double density) {
   return {viscosity, density, film.wall_friction};
 }
 
-/// Skin positions under the film grid's vertices, for films whose walls are not tissue.
-Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film::FilmGrid& film) {
-  Eigen::Matrix3Xd vertices(3, film.n_vertices());
-  for (int j = 0; j <= film.n_eta; ++j) {
-    for (int i = 0; i <= film.n_xi; ++i) {
-      vertices.col(film.vertex(i, j)) = geometry::skin_position(grid, {film.vertex_xi(i), film.vertex_eta(j)});
-    }
-  }
-  return vertices;
-}
-
 }  // namespace
-
-CoupledStep::CoupledStep(const FaceModel& model, const std::vector<FilmLayout>& films, const SimulationSpec& spec)
-    : model_(model),
-      films_(films),
-      coupling_(spec.coupling),
-      gravity_(spec.gravity),
-      fat_density_(spec.fat_density),
-      fat_viscosity_(spec.fat_viscosity) {}
-
-absl::StatusOr<std::unique_ptr<CoupledStep>> CoupledStep::create(const FaceModel& model,
-                                                                 const std::vector<FilmLayout>& films,
-                                                                 const SimulationSpec& spec) {
-  std::unique_ptr<CoupledStep> step(new CoupledStep(model, films, spec));
-  if (!model.layers.empty()) {
-    auto tissue = set_up_tissue(model, films, {spec.damping_mass, spec.damping_stiffness});
-    if (!tissue.ok()) return tissue.status();
-    step->tissue_ = std::make_unique<TissueSetup>(*std::move(tissue));
-  }
-  const absl::Status status = step->set_up();
-  if (!status.ok()) return status;
-  return step;
-}
-
-absl::Status CoupledStep::set_up() {
-  std::vector<coupling::GapVolume> gaps;
-  cell_offset_ = {0};
-  for (const FilmLayout& film : films_) {
-    const int offset = cell_offset_.back();
-    cell_offset_.push_back(offset + film.grid.n_cells());
-    gap_of_film_.push_back(-1);
-    projections_.push_back(std::make_unique<film::FilmProjection>(film.grid));
-    viscosity_.emplace_back(film.grid);
-    if (film.wall != FilmWallKind::kTissue) continue;
-    gap_of_film_.back() = static_cast<int>(gaps.size());
-    gaps.emplace_back(model_.geometry.grid, tissue_->walls[gaps.size()], film.grid, tissue_->tissue.dof_of_component(),
-                      tissue_->tissue.n_dofs());
-    for (int cell = 0; cell < film.grid.n_cells(); ++cell) cell_of_tissue_.push_back(offset + cell);
-  }
-  if (tissue_) {
-    if (tissue_->tissue.n_dofs() == 0)
-      return field_violation("model", "holds every node of its tissue: nothing can move");
-    gaps_ = std::make_unique<coupling::GapSystem>(std::move(gaps), tissue_->tissue.n_dofs());
-    factor_ = std::make_unique<coupling::CoupledFactor>(tissue_->tissue.system_matrix(), gaps_->derivative());
-    const absl::Status status = check_every_cell_can_open();
-    if (!status.ok()) return status;
-  }
-  rest_volume_.resize(cell_offset_.back());
-  SimulationState rest;
-  if (tissue_) rest.positions = tissue_->tissue.mesh().rest_positions;
-  for (size_t f = 0; f < films_.size(); ++f) {
-    const FilmLayout& film = films_[f];
-    if (gap_of_film_[f] < 0) {
-      rest_metric_.push_back(film::compute_film_metric(film.grid, vertices_on_skin(model_.geometry.grid, film.grid)));
-    } else {
-      rest_metric_.push_back(
-          film::compute_film_metric(film.grid, gaps_->film(gap_of_film_[f]).mid_surface(rest.positions)));
-    }
-    rest_area_.push_back(rest_metric_[f].area);
-    for (int cell = 0; cell < film.grid.n_cells(); ++cell) {
-      const geometry::ChartPoint centre = film.cell_centre(cell);
-      rest_volume_[cell_offset_[f] + cell] = rest_area_[f][cell] * film.rest_thickness.at(centre.xi, centre.eta);
-    }
-  }
-  return absl::OkStatus();
-}
-
-absl::Status CoupledStep::check_every_cell_can_open() {
-  gaps_->evaluate(tissue_->tissue.mesh().rest_positions);
-  Eigen::VectorXd opening = Eigen::VectorXd::Zero(gaps_->volume().size());
-  const Eigen::SparseMatrix<double>& b = gaps_->derivative();
-  for (int column = 0; column < b.outerSize(); ++column) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(b, column); it; ++it) opening[it.row()] += std::abs(it.value());
-  }
-  for (size_t f = 0; f < films_.size(); ++f) {
-    for (int cell = 0; gap_of_film_[f] >= 0 && cell < films_[f].grid.n_cells(); ++cell) {
-      const auto row = std::lower_bound(cell_of_tissue_.begin(), cell_of_tissue_.end(), cell_offset_[f] + cell) -
-                       cell_of_tissue_.begin();
-      if (opening[row] > 0.0) continue;
-      const geometry::ChartPoint at = films_[f].cell_centre(cell);
-      return field_violation(
-          absl::StrCat("films[", f, "].zones[", films_[f].grid.zone_of_cell[cell], "]"),
-          absl::StrCat("has a film cell at (", at.xi, ", ", at.eta,
-                       ") of the chart where no node of the tissue is free: make the zone at least two cells wide"));
-    }
-  }
-  return absl::OkStatus();
-}
-
-/// Newton iterations on equilibrium with every cell holding `target`; false when they do not converge.
-bool CoupledStep::open_to(const Eigen::VectorXd& target, double tolerance, SimulationState& state,
-                          Eigen::VectorXd& pressure) {
-  for (int iteration = 0; iteration < kMaxOpeningIterations; ++iteration) {
-    if (!linearise_tissue(state.positions, kOpeningStep)) return false;
-    // From the present positions at rest: no inertia and no damping, weight and internal force only.
-    const Eigen::VectorXd force = compute_residual_force(state, state.positions, kOpeningStep);
-    const Eigen::VectorXd response = factor_->compute_gap_response(force);
-    pressure = factor_->compliance().llt().solve(target - gaps_->volume() - response);
-    const Eigen::VectorXd dx = factor_->solve_displacement(force, response, pressure);
-    add_displacement(dx, state.positions);
-    if (!state.positions.allFinite()) return false;
-    gaps_->evaluate(state.positions);
-    const double gap_error = (target - gaps_->volume()).cwiseAbs().sum() / target.cwiseAbs().sum();
-    const double moved = (state.positions - tissue_->tissue.mesh().rest_positions).cwiseAbs().maxCoeff();
-    if (gap_error <= tolerance && dx.cwiseAbs().maxCoeff() <= 10.0 * tolerance * moved) return true;
-  }
-  return false;
-}
-
-absl::Status CoupledStep::open_to_initial_thickness(SimulationState& state) {
-  Eigen::VectorXd initial(cell_offset_.back());
-  for (size_t f = 0; f < films_.size(); ++f) {
-    for (int cell = 0; cell < films_[f].grid.n_cells(); ++cell) {
-      const geometry::ChartPoint centre = films_[f].cell_centre(cell);
-      initial[cell_offset_[f] + cell] = rest_area_[f][cell] * films_[f].initial_thickness.at(centre.xi, centre.eta);
-    }
-    state.films[f].volume = initial.segment(cell_offset_[f], films_[f].grid.n_cells());
-    if (films_[f].wall != FilmWallKind::kWinkler) continue;
-    state.films[f].pressure = films_[f].wall_stiffness *
-                              (state.films[f].volume - rest_volume_.segment(cell_offset_[f], films_[f].grid.n_cells()))
-                                  .cwiseQuotient(rest_area_[f]);
-  }
-  const Eigen::VectorXd opening = gather_tissue_part(initial - rest_volume_);
-  if (opening.size() == 0 || opening.cwiseAbs().maxCoeff() == 0.0) return absl::OkStatus();
-  Eigen::VectorXd pressure;
-  for (int load = 1; load <= kOpeningLoadSteps; ++load) {
-    const double tolerance = load == kOpeningLoadSteps ? kOpeningTolerance : kIntermediateOpeningTolerance;
-    if (open_to(opening * load / kOpeningLoadSteps, tolerance, state, pressure)) continue;
-    return field_violation(
-        "films", absl::StrCat("initial_thickness_mm opens the tissue further than it can go: no equilibrium at ",
-                              100 * load / kOpeningLoadSteps, " % of it"));
-  }
-  for (size_t k = 0; k < cell_of_tissue_.size(); ++k) {
-    const auto f =
-        std::upper_bound(cell_offset_.begin(), cell_offset_.end(), cell_of_tissue_[k]) - cell_offset_.begin() - 1;
-    state.films[f].pressure[cell_of_tissue_[k] - cell_offset_[f]] = pressure[k];
-  }
-  return absl::OkStatus();
-}
-
-SimulationState CoupledStep::rest_state() const {
-  SimulationState state;
-  if (tissue_) {
-    state.positions = tissue_->tissue.mesh().rest_positions;
-    state.velocities.setZero(3, state.positions.cols());
-  }
-  for (size_t f = 0; f < films_.size(); ++f) {
-    const film::FilmGrid& grid = films_[f].grid;
-    state.films.push_back({rest_volume_.segment(cell_offset_[f], grid.n_cells()), Eigen::VectorXd::Zero(grid.n_cells()),
-                           Eigen::VectorXd::Zero(grid.n_edges())});
-  }
-  return state;
-}
 
 film::FilmMetric CoupledStep::film_metric(const SimulationState& state, int film) const {
   if (gap_of_film_[film] < 0) return rest_metric_[film];

@@ -93,6 +93,15 @@ TEST(CoupledFactor, RefusesAnIndefiniteTissue) {
   EXPECT_TRUE(factor.factorise(c.s_lower, c.b).ok());
 }
 
+TEST(CoupledFactor, KnowsItsMemoryBeforeItFactors) {
+  // At least the dense block of the pressures, at most the whole triangle twice over (supernodes are padded).
+  const Case c(12, 9, 1.0, 1.0, 6);
+  const CoupledFactor factor(c.s_lower, c.b);
+  const double n = static_cast<double>(c.s_dense.rows()) + 9.0;
+  EXPECT_GE(factor.factor_bytes(), 8.0 * 45.0);
+  EXPECT_LE(factor.factor_bytes(), 8.0 * n * n);
+}
+
 TEST(CoupledFactor, WorksOnTissueInPieces) {
   // Two tissues that only a cell's pressure joins: the elimination tree of S is a forest.
   const Case c(6, 4, 1.0, 1.0, 4);

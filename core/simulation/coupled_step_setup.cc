@@ -1,0 +1,136 @@
+#include "core/simulation/coupled_step.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/field_violations.h"
+
+namespace lipofill::simulation {
+namespace {
+
+constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
+/// A session that needs more would crowd out the others.
+constexpr double kMaxFactorBytes = 4.0 * kGibibyte;
+
+/// Skin positions under the film grid's vertices, for films whose walls are not tissue.
+Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film::FilmGrid& film) {
+  Eigen::Matrix3Xd vertices(3, film.n_vertices());
+  for (int j = 0; j <= film.n_eta; ++j) {
+    for (int i = 0; i <= film.n_xi; ++i) {
+      vertices.col(film.vertex(i, j)) = geometry::skin_position(grid, {film.vertex_xi(i), film.vertex_eta(j)});
+    }
+  }
+  return vertices;
+}
+
+}  // namespace
+
+CoupledStep::CoupledStep(const FaceModel& model, const std::vector<FilmLayout>& films, const SimulationSpec& spec)
+    : model_(model),
+      films_(films),
+      coupling_(spec.coupling),
+      gravity_(spec.gravity),
+      fat_density_(spec.fat_density),
+      fat_viscosity_(spec.fat_viscosity) {}
+
+absl::StatusOr<std::unique_ptr<CoupledStep>> CoupledStep::create(const FaceModel& model,
+                                                                 const std::vector<FilmLayout>& films,
+                                                                 const SimulationSpec& spec) {
+  std::unique_ptr<CoupledStep> step(new CoupledStep(model, films, spec));
+  if (!model.layers.empty()) {
+    auto tissue = set_up_tissue(model, films, {spec.damping_mass, spec.damping_stiffness});
+    if (!tissue.ok()) return tissue.status();
+    step->tissue_ = std::make_unique<TissueSetup>(*std::move(tissue));
+  }
+  const absl::Status status = step->set_up();
+  if (!status.ok()) return status;
+  return step;
+}
+
+absl::Status CoupledStep::set_up() {
+  std::vector<coupling::GapVolume> gaps;
+  cell_offset_ = {0};
+  for (const FilmLayout& film : films_) {
+    const int offset = cell_offset_.back();
+    cell_offset_.push_back(offset + film.grid.n_cells());
+    gap_of_film_.push_back(-1);
+    projections_.push_back(std::make_unique<film::FilmProjection>(film.grid));
+    viscosity_.emplace_back(film.grid);
+    if (film.wall != FilmWallKind::kTissue) continue;
+    gap_of_film_.back() = static_cast<int>(gaps.size());
+    gaps.emplace_back(model_.geometry.grid, tissue_->walls[gaps.size()], film.grid, tissue_->tissue.dof_of_component(),
+                      tissue_->tissue.n_dofs());
+    for (int cell = 0; cell < film.grid.n_cells(); ++cell) cell_of_tissue_.push_back(offset + cell);
+  }
+  if (tissue_) {
+    if (tissue_->tissue.n_dofs() == 0)
+      return field_violation("model", "holds every node of its tissue: nothing can move");
+    gaps_ = std::make_unique<coupling::GapSystem>(std::move(gaps), tissue_->tissue.n_dofs());
+    factor_ = std::make_unique<coupling::CoupledFactor>(tissue_->tissue.system_matrix(), gaps_->derivative());
+    if (factor_->factor_bytes() > kMaxFactorBytes) {
+      return field_violation("model", absl::StrCat("needs ", factor_->factor_bytes() / kGibibyte,
+                                                   " GiB to factor with these films, must be at most ",
+                                                   kMaxFactorBytes / kGibibyte, " GiB: take fewer hexahedra"));
+    }
+    const absl::Status status = check_every_cell_can_open();
+    if (!status.ok()) return status;
+  }
+  rest_volume_.resize(cell_offset_.back());
+  SimulationState rest;
+  if (tissue_) rest.positions = tissue_->tissue.mesh().rest_positions;
+  for (size_t f = 0; f < films_.size(); ++f) {
+    const FilmLayout& film = films_[f];
+    if (gap_of_film_[f] < 0) {
+      rest_metric_.push_back(film::compute_film_metric(film.grid, vertices_on_skin(model_.geometry.grid, film.grid)));
+    } else {
+      rest_metric_.push_back(
+          film::compute_film_metric(film.grid, gaps_->film(gap_of_film_[f]).mid_surface(rest.positions)));
+    }
+    rest_area_.push_back(rest_metric_[f].area);
+    for (int cell = 0; cell < film.grid.n_cells(); ++cell) {
+      const geometry::ChartPoint centre = film.cell_centre(cell);
+      rest_volume_[cell_offset_[f] + cell] = rest_area_[f][cell] * film.rest_thickness.at(centre.xi, centre.eta);
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status CoupledStep::check_every_cell_can_open() {
+  gaps_->evaluate(tissue_->tissue.mesh().rest_positions);
+  Eigen::VectorXd opening = Eigen::VectorXd::Zero(gaps_->volume().size());
+  const Eigen::SparseMatrix<double>& b = gaps_->derivative();
+  for (int column = 0; column < b.outerSize(); ++column) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(b, column); it; ++it) opening[it.row()] += std::abs(it.value());
+  }
+  for (size_t f = 0; f < films_.size(); ++f) {
+    for (int cell = 0; gap_of_film_[f] >= 0 && cell < films_[f].grid.n_cells(); ++cell) {
+      const auto row = std::lower_bound(cell_of_tissue_.begin(), cell_of_tissue_.end(), cell_offset_[f] + cell) -
+                       cell_of_tissue_.begin();
+      if (opening[row] > 0.0) continue;
+      const geometry::ChartPoint at = films_[f].cell_centre(cell);
+      return field_violation(
+          absl::StrCat("films[", f, "].zones[", films_[f].grid.zone_of_cell[cell], "]"),
+          absl::StrCat("has a film cell at (", at.xi, ", ", at.eta,
+                       ") of the chart where no node of the tissue is free: make the zone at least two cells wide"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+SimulationState CoupledStep::rest_state() const {
+  SimulationState state;
+  if (tissue_) {
+    state.positions = tissue_->tissue.mesh().rest_positions;
+    state.velocities.setZero(3, state.positions.cols());
+  }
+  for (size_t f = 0; f < films_.size(); ++f) {
+    const film::FilmGrid& grid = films_[f].grid;
+    state.films.push_back({rest_volume_.segment(cell_offset_[f], grid.n_cells()), Eigen::VectorXd::Zero(grid.n_cells()),
+                           Eigen::VectorXd::Zero(grid.n_edges())});
+  }
+  return state;
+}
+
+}  // namespace lipofill::simulation

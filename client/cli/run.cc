@@ -134,7 +134,9 @@ absl::Status Run::create_simulation() {
   request.set_display_name(display_name_of(plan_.plan.name()));
   *request.mutable_spec() = plan_.plan.simulation();
   request.mutable_spec()->set_model(model_.name());
-  auto simulation = connection_->call<SimulationService>(&SimulationService::Stub::CreateSimulation, request);
+  progress_.show("setting up the simulation");
+  auto simulation = connection_->call<SimulationService>(&SimulationService::Stub::CreateSimulation, request,
+                                                         Connection::kCreationTimeout);
   if (!simulation.ok()) return simulation.status();
   simulation_ = *std::move(simulation);
   record_.simulation = simulation_.name();

@@ -48,7 +48,8 @@ absl::StatusOr<ExitCode> create(Application& application, const Options& options
   *request.mutable_spec() = plan->plan.simulation();
   request.mutable_spec()->set_model(options.model);
   request.set_start(options.start);
-  const auto simulation = application.connect().call<SimulationService>(&Stub::CreateSimulation, request);
+  const auto simulation =
+      application.connect().call<SimulationService>(&Stub::CreateSimulation, request, Connection::kCreationTimeout);
   if (!simulation.ok()) return simulation.status();
   return answer(application, *simulation);
 }

@@ -41,6 +41,9 @@ class Connection {
   /// The same daemon, for what must still be said to it once stop was asked for.
   Connection without_stop() const;
 
+  /// Setting up a simulation of a large model takes the daemon minutes.
+  static constexpr std::chrono::seconds kCreationTimeout{600};
+
   /// One request, one response. DEADLINE_EXCEEDED after `timeout`.
   template <typename Service, typename Request, typename Response>
   absl::StatusOr<Response> call(grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&, Response*),

@@ -14,6 +14,11 @@ constexpr char kPayload[] = "lipofill/field_violations";
 constexpr char kUnitSeparator = '\x1f';
 constexpr char kRecordSeparator = '\x1e';
 
+std::string describe(double value, std::string_view unit, double low, double high, const char* bracket) {
+  const std::string with_unit = unit.empty() ? absl::StrCat(value) : absl::StrCat(value, " ", std::string(unit));
+  return absl::StrCat("is ", with_unit, ", must be in [", low, ", ", high, bracket);
+}
+
 absl::Status to_status_with_code(const std::vector<FieldViolation>& violations, absl::StatusCode code) {
   const auto sentence = [](std::string* out, const FieldViolation& v) {
     absl::StrAppend(out, v.field, ": ", v.description);
@@ -36,13 +41,13 @@ void FieldViolations::add(std::string field, std::string description) {
 void FieldViolations::check_range(std::string_view field, double value, double low, double high,
                                   std::string_view unit) {
   if (value >= low && value <= high) return;
-  add(std::string(field), absl::StrCat("is ", value, " ", std::string(unit), ", must be in [", low, ", ", high, "]"));
+  add(std::string(field), describe(value, unit, low, high, "]"));
 }
 
 void FieldViolations::check_half_open(std::string_view field, double value, double low, double high,
                                       std::string_view unit) {
   if (value >= low && value < high) return;
-  add(std::string(field), absl::StrCat("is ", value, " ", std::string(unit), ", must be in [", low, ", ", high, ")"));
+  add(std::string(field), describe(value, unit, low, high, ")"));
 }
 
 void FieldViolations::absorb(std::string_view prefix, const absl::Status& status) {

@@ -84,7 +84,8 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
   return simulation;
 }
 
-absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const v1::CreateSimulationRequest& request) {
+absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const v1::CreateSimulationRequest& request,
+                                                 const std::function<bool()>& caller_has_left) {
   const auto record = read_request(request);
   if (!record.ok()) return record.status();
   const RequestKey key = make_request_key("CreateSimulation", request.request_id(), request);
@@ -96,6 +97,7 @@ absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const v1::Cre
   if (!place.ok()) return place.status();
   const auto session = make_session(backend, *record, request.spec());
   if (!session.ok()) return session.status();
+  if (caller_has_left()) return absl::CancelledError("the caller left before the simulation was created");
   const auto kept = backend.store.create_simulation(*record, key);
   if (!kept.ok()) return kept.status();
   if (kept->id != record->id) return show(backend, kept->id);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "absl/status/statusor.h"
 #include "lipofill/v1/simulation_service.pb.h"
 #include "server/rpc/backend.h"
@@ -11,6 +13,7 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
 
 /// Makes the simulation (the core checks the specification), its record and its session, or finds what an equal request
 /// made. May take seconds: the model may have to be built again.
-absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const v1::CreateSimulationRequest& request);
+absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const v1::CreateSimulationRequest& request,
+                                                 const std::function<bool()>& caller_has_left);
 
 }  // namespace lipofill::server

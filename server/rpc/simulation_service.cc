@@ -74,8 +74,8 @@ Reactor* SimulationService::command(Context* context, const Request* request, v1
 
 Reactor* SimulationService::CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                                              v1::Simulation* response) {
-  return answer_later(context, request, backend_, [this, request, response] {
-    auto simulation = create_simulation(backend_, *request);
+  return answer_later(context, request, backend_, [this, context, request, response] {
+    auto simulation = create_simulation(backend_, *request, [context] { return context->IsCancelled(); });
     if (simulation.ok()) *response = *std::move(simulation);
     return simulation.status();
   });

@@ -14,17 +14,6 @@ constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 /// A session that needs more would crowd out the others.
 constexpr double kMaxFactorBytes = 4.0 * kGibibyte;
 
-/// Skin positions under the film grid's vertices, for films whose walls are not tissue.
-Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film::FilmGrid& film) {
-  Eigen::Matrix3Xd vertices(3, film.n_vertices());
-  for (int j = 0; j <= film.n_eta; ++j) {
-    for (int i = 0; i <= film.n_xi; ++i) {
-      vertices.col(film.vertex(i, j)) = geometry::skin_position(grid, {film.vertex_xi(i), film.vertex_eta(j)});
-    }
-  }
-  return vertices;
-}
-
 }  // namespace
 
 CoupledStep::CoupledStep(const FaceModel& model, const std::vector<FilmLayout>& films, const SimulationSpec& spec)

@@ -200,6 +200,16 @@ absl::StatusOr<FilmLayout> place_film(const FaceModel& model, const FilmSpec& sp
   return layout;
 }
 
+Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film::FilmGrid& film) {
+  Eigen::Matrix3Xd vertices(3, film.n_vertices());
+  for (int j = 0; j <= film.n_eta; ++j) {
+    for (int i = 0; i <= film.n_xi; ++i) {
+      vertices.col(film.vertex(i, j)) = geometry::skin_position(grid, {film.vertex_xi(i), film.vertex_eta(j)});
+    }
+  }
+  return vertices;
+}
+
 std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const film::FilmGrid& film) {
   const ChartBox& box = film.extent;
   constexpr double kRoundOff = 1e-9;

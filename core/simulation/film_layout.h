@@ -31,6 +31,9 @@ struct FilmLayout {
 /// "films[index]", values in the units of lipofill.v1.Film.
 absl::StatusOr<FilmLayout> place_film(const FaceModel& model, const FilmSpec& spec);
 
+/// Positions on the undeformed skin over the vertices of a film's grid [m] (3, n_vertices).
+Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film::FilmGrid& film);
+
 /// Flags of the level's nodes that are doubled: all quadrilaterals around the node lie in cells of one zone. The tissue
 /// stays bonded along the edges of zones.
 std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const film::FilmGrid& film);

@@ -16,14 +16,7 @@ constexpr double kMaxMeanThickness = 20e-3;
 
 /// Skin area over every cell of a film [m2].
 Eigen::VectorXd cell_areas(const FaceModel& model, const film::FilmGrid& grid) {
-  Eigen::Matrix3Xd vertices(3, grid.n_vertices());
-  for (int j = 0; j <= grid.n_eta; ++j) {
-    for (int i = 0; i <= grid.n_xi; ++i) {
-      vertices.col(grid.vertex(i, j)) =
-          geometry::skin_position(model.geometry.grid, {grid.vertex_xi(i), grid.vertex_eta(j)});
-    }
-  }
-  return film::compute_film_metric(grid, vertices).area;
+  return film::compute_film_metric(grid, vertices_on_skin(model.geometry.grid, grid)).area;
 }
 
 /// Film and zone of a zone's name; film -1 when there is none of that name.

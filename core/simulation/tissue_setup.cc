@@ -96,8 +96,7 @@ coupling::WallNodes walls_at(const LayeredGrid& grid, const SplitMesh& split, in
 
 }  // namespace
 
-absl::StatusOr<TissueSetup> set_up_tissue(const FaceModel& model, const std::vector<FilmLayout>& films,
-                                          const solid::RayleighDamping& damping) {
+HeldMesh hold_mesh(const FaceModel& model, const std::vector<FilmLayout>& films) {
   const LayeredGrid& grid = model.geometry.grid;
   std::vector<std::vector<bool>> open(grid.n_levels());
   for (const FilmLayout& film : films) {
@@ -107,19 +106,25 @@ absl::StatusOr<TissueSetup> set_up_tissue(const FaceModel& model, const std::vec
     if (level.empty()) level.assign(grid.nodes_per_level(), false);
     for (size_t s = 0; s < of_film.size(); ++s) level[s] = level[s] || of_film[s];
   }
-  SplitMesh split = coupling::split_mesh(grid, open);
-  solid::NodeSupports supports = hold_nodes(model, split);
+  HeldMesh held;
+  held.split = coupling::split_mesh(grid, open);
+  held.supports = hold_nodes(model, held.split);
+  for (const FilmLayout& film : films) {
+    if (film.wall == FilmWallKind::kTissue) held.walls.push_back(walls_at(grid, held.split, film.level));
+  }
+  held.skin_nodes = walls_at(grid, held.split, 0).outer;
+  return held;
+}
+
+absl::StatusOr<TissueSetup> set_up_tissue(const FaceModel& model, const std::vector<FilmLayout>& films,
+                                          const solid::RayleighDamping& damping) {
+  HeldMesh held = hold_mesh(model, films);
   std::vector<solid::ElasticMaterial> materials;
   for (const TissueLayerSpec& layer : model.layers) materials.push_back(layer.material);
-  auto tissue = solid::Tissue::create(split.mesh, std::move(materials), std::move(supports), damping);
+  auto tissue =
+      solid::Tissue::create(std::move(held.split.mesh), std::move(materials), std::move(held.supports), damping);
   if (!tissue.ok()) return tissue.status();
-
-  TissueSetup setup{*std::move(tissue), {}, {}};
-  for (const FilmLayout& film : films) {
-    if (film.wall == FilmWallKind::kTissue) setup.walls.push_back(walls_at(grid, split, film.level));
-  }
-  setup.skin_nodes = walls_at(grid, split, 0).outer;
-  return setup;
+  return TissueSetup{*std::move(tissue), std::move(held.walls), std::move(held.skin_nodes)};
 }
 
 }  // namespace lipofill::simulation

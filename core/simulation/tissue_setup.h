@@ -11,7 +11,19 @@
 
 namespace lipofill::simulation {
 
-/// The model's tissue, split where the films lie, and how its nodes are held.
+/// The model's hexahedra, split where the films lie, and how their nodes are held: what there is to build a tissue
+/// from.
+struct HeldMesh {
+  coupling::SplitMesh split;
+  solid::NodeSupports supports;
+  std::vector<coupling::WallNodes> walls;  ///< a film on tissue, in the order of the films
+  std::vector<int> skin_nodes;             ///< (nodes_per_level)
+};
+
+/// Only for a model with layers.
+HeldMesh hold_mesh(const FaceModel& model, const std::vector<FilmLayout>& films);
+
+/// The tissue of a held mesh.
 struct TissueSetup {
   solid::Tissue tissue;
   std::vector<coupling::WallNodes> walls;  ///< a film on tissue, in the order of the films

@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/strip.h"
+#include "core/anatomy/sided_names.h"
 #include "core/base/field_violations.h"
 
 namespace lipofill::anatomy {
@@ -35,14 +35,6 @@ const std::vector<RegionRow>& rows() {
   return table;
 }
 
-bool is_midline(const std::string& landmark) {
-  return landmark == "pogonion";
-}
-
-std::string with_side(const std::string& landmark, std::string_view side) {
-  return is_midline(landmark) ? landmark : absl::StrCat(landmark, "_", std::string(side));
-}
-
 constexpr double kMillimetre = 1e-3;
 
 }  // namespace
@@ -54,10 +46,8 @@ std::vector<std::string> region_names() {
 }
 
 absl::StatusOr<Region> find_region(std::string_view name) {
-  for (const std::string_view side : {"left", "right"}) {
-    const std::string suffix = absl::StrCat("_", std::string(side));
-    if (!name.ends_with(suffix)) continue;
-    const std::string_view stem = name.substr(0, name.size() - suffix.size());
+  if (const auto parts = split_side(name)) {
+    const auto [stem, side] = *parts;
     for (const RegionRow& row : rows()) {
       if (stem != row.name) continue;
       Region region;

@@ -20,6 +20,8 @@ void check_material(std::string_view field, const ElasticMaterial& material, Fie
   check_positive(prefix + ".youngs_modulus", material.youngs_modulus, "Pa", violations);
   violations.check_half_open(prefix + ".poisson_ratio", material.poisson_ratio, 0.0, 0.5, "");
   check_positive(prefix + ".density", material.density, "kg/m3", violations);
+  if (std::isfinite(material.prestress) && material.prestress >= 0.0) return;
+  violations.add(prefix + ".prestress", absl::StrCat("is ", material.prestress, " Pa, must be finite and at least 0"));
 }
 
 Eigen::Matrix<double, 6, 6> compute_elasticity_matrix(const ElasticMaterial& material) {

@@ -7,11 +7,12 @@
 
 namespace lipofill::solid {
 
-/// Isotropic linear elasticity.
+/// Isotropic linear elasticity, under tension at rest (prestress.h).
 struct ElasticMaterial {
   double youngs_modulus = 0.0;  ///< E   [Pa]     > 0
   double poisson_ratio = 0.0;   ///< nu  [1]      in [0, 0.5)
   double density = 0.0;         ///< rho [kg/m3]  > 0
+  double prestress = 0.0;       ///< sigma_0 [Pa] in the plane of the layer, >= 0
 };
 
 /// Adds a violation below `field` for each constant that is out of its bounds, not finite or not a number.

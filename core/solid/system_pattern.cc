@@ -6,17 +6,22 @@
 namespace lipofill::solid {
 namespace {
 
-/// For each node the nodes from it upwards that share a hexahedron with it, itself first, ascending.
-std::vector<std::vector<int>> collect_upper_neighbours(int n_nodes, const std::vector<std::array<int, 8>>& hexahedra) {
-  std::vector<std::vector<int>> neighbours(n_nodes);
-  for (int a = 0; a < n_nodes; ++a) neighbours[a].push_back(a);
-  for (const std::array<int, 8>& hexahedron : hexahedra) {
-    for (int a : hexahedron) {
-      for (int b : hexahedron) {
-        if (b > a) neighbours[a].push_back(b);
-      }
+template <class Nodes>
+void couple(const Nodes& nodes, std::vector<std::vector<int>>& neighbours) {
+  for (int a : nodes) {
+    for (int b : nodes) {
+      if (b > a) neighbours[a].push_back(b);
     }
   }
+}
+
+/// For each node the nodes from it upwards that share a hexahedron or a group with it, itself first, ascending.
+std::vector<std::vector<int>> collect_upper_neighbours(int n_nodes, const std::vector<std::array<int, 8>>& hexahedra,
+                                                       const std::vector<std::vector<int>>& groups) {
+  std::vector<std::vector<int>> neighbours(n_nodes);
+  for (int a = 0; a < n_nodes; ++a) neighbours[a].push_back(a);
+  for (const std::array<int, 8>& hexahedron : hexahedra) couple(hexahedron, neighbours);
+  for (const std::vector<int>& group : groups) couple(group, neighbours);
   for (std::vector<int>& list : neighbours) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -36,9 +41,10 @@ int number_dofs(const std::vector<std::array<bool, 3>>& fixed, std::vector<int>&
 }  // namespace
 
 SystemPattern::SystemPattern(int n_nodes, const std::vector<std::array<int, 8>>& hexahedra,
-                             const std::vector<std::array<bool, 3>>& fixed) {
+                             const std::vector<std::array<bool, 3>>& fixed,
+                             const std::vector<std::vector<int>>& groups) {
   const int n_dofs = number_dofs(fixed, dof_of_component_);
-  const std::vector<std::vector<int>> neighbours = collect_upper_neighbours(n_nodes, hexahedra);
+  const std::vector<std::vector<int>> neighbours = collect_upper_neighbours(n_nodes, hexahedra, groups);
   std::vector<int> starts = {0};
   std::vector<int> rows;
   for (int column_component = 0; column_component < 3 * n_nodes; ++column_component) {

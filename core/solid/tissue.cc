@@ -11,24 +11,26 @@
 namespace lipofill::solid {
 
 absl::StatusOr<Tissue> Tissue::create(HexMesh mesh, std::vector<ElasticMaterial> materials, NodeSupports supports,
-                                      RayleighDamping damping) {
+                                      RayleighDamping damping, std::vector<WallSpring> springs) {
   if (supports.fixed.empty()) supports.fixed.resize(mesh.n_nodes(), {false, false, false});
   if (supports.spring.empty()) supports.spring.resize(mesh.n_nodes(), 0.0);
-  absl::Status status = check_tissue(mesh, materials, supports, damping);
+  absl::Status status = check_tissue(mesh, materials, supports, damping, springs);
   if (!status.ok()) return status;
-  Tissue tissue(std::move(mesh), materials, std::move(supports), damping);
+  Tissue tissue(std::move(mesh), materials, std::move(supports), damping, springs);
   tissue.assemble(tissue.mesh_.rest_positions, std::numeric_limits<double>::infinity());
   return tissue;
 }
 
 Tissue::Tissue(HexMesh mesh, const std::vector<ElasticMaterial>& materials, NodeSupports supports,
-               RayleighDamping damping)
+               RayleighDamping damping, const std::vector<WallSpring>& springs)
     : mesh_(std::move(mesh)),
       supports_(std::move(supports)),
       damping_(damping),
-      pattern_(mesh_.n_nodes(), mesh_.hexahedra, supports_.fixed),
+      pattern_(mesh_.n_nodes(), mesh_.hexahedra, supports_.fixed, collect_coupled_nodes(springs)),
       elements_(std::make_unique<const ElementAssembler>(mesh_, materials, pattern_)),
       geometric_stiffness_(mesh_, materials, pattern_),
+      prestress_(mesh_, materials, pattern_),
+      springs_(springs, mesh_.rest_positions, pattern_),
       geometric_values_(pattern_.matrix().nonZeros()),
       stiffness_values_(pattern_.matrix().nonZeros() + 1),
       padded_force_(pattern_.n_dofs() + 1),
@@ -74,12 +76,15 @@ void Tissue::assemble(const Eigen::Matrix3Xd& x, double dt) {
   min_volume_ratio_ = totals.min_volume_ratio;
   geometric_values_.setZero();
   geometric_stiffness_.add(x, geometric_values_);
-  add_springs(x);
+  prestress_.add_stiffness(geometric_values_);
+  elastic_energy_ += prestress_.add_force(x, padded_force_);
+  elastic_energy_ += springs_.add(x, stiffness_values_, geometric_values_, padded_force_);
+  add_supports(x);
   internal_force_ = padded_force_.head(n_dofs());
   compose_system_matrix(dt);
 }
 
-void Tissue::add_springs(const Eigen::Matrix3Xd& x) {
+void Tissue::add_supports(const Eigen::Matrix3Xd& x) {
   for (int a = 0; a < mesh_.n_nodes(); ++a) {
     const double stiffness = supports_.spring[a];
     if (stiffness == 0.0) continue;

@@ -10,7 +10,9 @@
 #include "core/solid/geometric_stiffness.h"
 #include "core/solid/hex_mesh.h"
 #include "core/solid/material.h"
+#include "core/solid/prestress.h"
 #include "core/solid/system_pattern.h"
+#include "core/solid/wall_springs.h"
 
 namespace lipofill::solid {
 
@@ -30,10 +32,12 @@ struct RayleighDamping {
 
 /// Corotational finite-element tissue:
 ///
-///     f_int(x) = sum_e R_e K_e (R_e^T x_e - X_e)        R_e: rotation of the element's centre, K_e constant (24, 24)
+///     f_int(x) = sum_e R_e K_e (R_e^T x_e - X_e) + springs + prestress
+///                                                       R_e: rotation of the element's centre, K_e constant (24, 24)
 ///     S        = M/dt^2 + D/dt + K + K_G,   K = sum_e R_e K_e R_e^T + springs
 ///
-/// with K_G the stiffness of tension, geometric_stiffness.h,
+/// with K_G the stiffness of tension: of what strain brings (geometric_stiffness.h), of what is there at rest
+/// (prestress.h) and of springs across films (wall_springs.h);
 /// after Mueller & Gross (2004); S is the paper's K of eq. 5. Mass is lumped by row sums, so that gravity on it is the
 /// consistent load. K_e is the solid-shell (solid_shell.h), in stacked layers EAS-9 (incompatible_modes.h). Degrees of
 /// freedom are the components of nodes that are not fixed, numbered node by node.
@@ -46,7 +50,7 @@ class Tissue {
   /// hexahedron, a position that is not finite, a material, spring or damping out of bounds, a hexahedron with a
   /// non-positive Jacobian at a corner or Gauss point, naming it.
   static absl::StatusOr<Tissue> create(HexMesh mesh, std::vector<ElasticMaterial> materials, NodeSupports supports,
-                                       RayleighDamping damping);
+                                       RayleighDamping damping, std::vector<WallSpring> springs = {});
 
   Tissue(Tissue&& other) noexcept;
   Tissue& operator=(Tissue&& other) noexcept;
@@ -63,6 +67,14 @@ class Tissue {
   /// S = K + K_G. Fixed components of `x` count where they are, so a support may be moved. Allocates nothing.
   void assemble(const Eigen::Matrix3Xd& x, double dt);
 
+  int n_springs() const { return springs_.size(); }
+  /// A broken spring carries nothing from the next assemble on. All are intact at first.
+  void set_spring_intact(int spring, bool intact) { springs_.set_intact(spring, intact); }
+  bool spring_intact(int spring) const { return springs_.intact(spring); }
+  /// Of a spring at the last assemble: tension [N], 0 when slack or broken, and distance between its ends [m].
+  double spring_tension(int spring) const { return springs_.tension(spring); }
+  double spring_length(int spring) const { return springs_.length(spring); }
+
   /// f_int of the last assemble, springs included, a value a degree of freedom [N].
   const Eigen::VectorXd& internal_force() const { return internal_force_; }
 
@@ -73,7 +85,7 @@ class Tissue {
   /// each).
   const Eigen::SparseMatrix<double>& system_matrix() const { return system_matrix_; }
 
-  /// Elastic energy of the last assemble, 1/2 sum_e d_e^T K_e d_e + springs  [J].
+  /// Elastic energy of the last assemble, 1/2 sum_e d_e^T K_e d_e + springs + prestress  [J].
   double elastic_energy() const { return elastic_energy_; }
 
   /// Smallest det(F) over element centres at the last assemble; not positive: the element is turned inside out. Minus
@@ -83,10 +95,11 @@ class Tissue {
   const RayleighDamping& damping() const { return damping_; }
 
  private:
-  Tissue(HexMesh mesh, const std::vector<ElasticMaterial>& materials, NodeSupports supports, RayleighDamping damping);
+  Tissue(HexMesh mesh, const std::vector<ElasticMaterial>& materials, NodeSupports supports, RayleighDamping damping,
+         const std::vector<WallSpring>& springs);
   void lump_mass(const std::vector<ElasticMaterial>& materials);
   void prepare_diagonal();
-  void add_springs(const Eigen::Matrix3Xd& x);
+  void add_supports(const Eigen::Matrix3Xd& x);
   void compose_system_matrix(double dt);
 
   HexMesh mesh_;
@@ -98,6 +111,8 @@ class Tissue {
   Eigen::VectorXd dof_mass_;   ///< mass of the node of each degree of freedom [kg]
   std::vector<int> diagonal_;  ///< where the diagonal value of each degree of freedom is
   GeometricStiffness geometric_stiffness_;
+  Prestress prestress_;
+  WallSprings springs_;
   Eigen::VectorXd geometric_values_;  ///< K_G in the pattern [N/m]
   Eigen::VectorXd stiffness_values_;  ///< K in the pattern, then one place for what is not kept [N/m]
   Eigen::VectorXd padded_force_;      ///< f_int, then one place for what is not kept [N]

@@ -14,6 +14,7 @@ namespace {
 
 // A mesh can be wrong everywhere; a message need not be.
 constexpr int kMaxReports = 5;
+constexpr double kWeightTolerance = 1e-9;
 
 void check_size(const char* field, size_t size, int expected, FieldViolations& violations) {
   if (size == static_cast<size_t>(expected)) return;
@@ -93,6 +94,35 @@ void check_springs(const NodeSupports& supports, FieldViolations& violations) {
   }
 }
 
+bool is_on_nodes(const WallSpring& spring, int n_nodes) {
+  const auto exists = [n_nodes](int a) { return a >= 0 && a < n_nodes; };
+  return std::all_of(spring.outer.begin(), spring.outer.end(), exists) &&
+         std::all_of(spring.inner.begin(), spring.inner.end(), exists);
+}
+
+std::string find_fault(const WallSpring& spring, int n_nodes) {
+  if (!is_on_nodes(spring, n_nodes)) return absl::StrCat("has a node out of [0, ", n_nodes, ")");
+  const double sum = spring.weight[0] + spring.weight[1] + spring.weight[2] + spring.weight[3];
+  if (!(std::abs(sum - 1.0) <= kWeightTolerance))
+    return absl::StrCat("has weights that add up to ", sum, ", must be 1");
+  if (!std::isfinite(spring.stiffness) || spring.stiffness <= 0.0) {
+    return absl::StrCat("has stiffness ", spring.stiffness, " N/m, must be finite and greater than 0");
+  }
+  if (!std::isfinite(spring.slack) || spring.slack < 0.0) {
+    return absl::StrCat("has slack ", spring.slack, " m, must be finite and at least 0");
+  }
+  return "";
+}
+
+void check_wall_springs(const std::vector<WallSpring>& springs, int n_nodes, FieldViolations& violations) {
+  int reports = 0;
+  for (size_t s = 0; s < springs.size(); ++s) {
+    const std::string fault = find_fault(springs[s], n_nodes);
+    if (fault.empty() || ++reports > kMaxReports) continue;
+    violations.add(absl::StrCat("springs[", s, "]"), fault);
+  }
+}
+
 void check_damping(const char* field, double value, const char* unit, FieldViolations& violations) {
   if (std::isfinite(value) && value >= 0.0) return;
   violations.add(field, absl::StrCat("is ", value, " ", unit, ", must be finite and at least 0"));
@@ -101,7 +131,8 @@ void check_damping(const char* field, double value, const char* unit, FieldViola
 }  // namespace
 
 absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
-                          const NodeSupports& supports, const RayleighDamping& damping) {
+                          const NodeSupports& supports, const RayleighDamping& damping,
+                          const std::vector<WallSpring>& springs) {
   FieldViolations violations;
   for (size_t m = 0; m < materials.size(); ++m) {
     check_material(absl::StrCat("materials[", m, "]"), materials[m], violations);
@@ -110,6 +141,7 @@ absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial
   check_damping("damping.beta", damping.beta, "s", violations);
   check_sizes(mesh, supports, violations);
   check_springs(supports, violations);
+  check_wall_springs(springs, mesh.n_nodes(), violations);
   if (!violations.empty()) return violations.to_status();
   check_indices(mesh, static_cast<int>(materials.size()), violations);
   if (!violations.empty()) return violations.to_status();

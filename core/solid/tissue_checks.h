@@ -12,6 +12,7 @@ namespace lipofill::solid {
 /// What Tissue::create refuses: INVALID_ARGUMENT with a violation for everything wrong, at most a few of each kind.
 /// Checked by tests/unit/solid/tissue_checks_test.cc.
 absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
-                          const NodeSupports& supports, const RayleighDamping& damping);
+                          const NodeSupports& supports, const RayleighDamping& damping,
+                          const std::vector<WallSpring>& springs = {});
 
 }  // namespace lipofill::solid

@@ -19,6 +19,7 @@ struct Input {
   std::vector<ElasticMaterial> materials = {{1e5, 0.45, 1000.0}};
   NodeSupports supports;
   RayleighDamping damping;
+  std::vector<WallSpring> springs = {{{0, 1, 2, 3}, {4, 5, 6, 7}, {0.25, 0.25, 0.25, 0.25}, 10.0}};
 };
 
 struct Case {
@@ -35,7 +36,7 @@ class TissueChecksTest : public ::testing::TestWithParam<Case> {};
 TEST_P(TissueChecksTest, NamesWhatIsWrong) {
   Input input;
   GetParam().spoil(input);
-  const auto tissue = Tissue::create(input.mesh, input.materials, input.supports, input.damping);
+  const auto tissue = Tissue::create(input.mesh, input.materials, input.supports, input.damping, input.springs);
   ASSERT_EQ(tissue.status().code(), absl::StatusCode::kInvalidArgument);
   const std::vector<FieldViolation> violations = field_violations_of(tissue.status());
   ASSERT_FALSE(violations.empty());
@@ -52,6 +53,22 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"incompressible", [](Input& in) { in.materials[0].poisson_ratio = 0.5; }, "materials[0].poisson_ratio",
              "[0, 0.5)"},
         Case{"density", [](Input& in) { in.materials[0].density = kNan; }, "materials[0].density", "nan"},
+        Case{"prestress", [](Input& in) { in.materials[0].prestress = -1.0; }, "materials[0].prestress", "-1 Pa"},
+        Case{"wall_spring_node", [](Input& in) { in.springs[0].outer[3] = 27; }, "springs[0]", "[0, 27)"},
+        Case{"wall_spring_negative_node", [](Input& in) { in.springs[0].inner[1] = -1; }, "springs[0]", "[0, 27)"},
+        Case{"wall_spring_weights", [](Input& in) { in.springs[0].weight[0] = 0.5; }, "springs[0]", "1.25"},
+        Case{"wall_spring_weight_nan", [](Input& in) { in.springs[0].weight[2] = kNan; }, "springs[0]", "nan"},
+        Case{"wall_spring_stiffness", [](Input& in) { in.springs[0].stiffness = 0.0; }, "springs[0]", "0 N/m"},
+        Case{"wall_spring_infinite",
+             [](Input& in) { in.springs[0].stiffness = std::numeric_limits<double>::infinity(); }, "springs[0]",
+             "inf N/m"},
+        Case{"wall_spring_slack", [](Input& in) { in.springs[0].slack = -1e-3; }, "springs[0]", "-0.001 m"},
+        Case{"many_wall_springs",
+             [](Input& in) {
+               in.springs.assign(100, in.springs[0]);
+               for (WallSpring& spring : in.springs) spring.slack = kNan;
+             },
+             "springs[0]", "nan m"},
         Case{"alpha", [](Input& in) { in.damping.alpha = -1.0; }, "damping.alpha", "-1 1/s"},
         Case{"beta", [](Input& in) { in.damping.beta = kNan; }, "damping.beta", "nan"},
         Case{"spring", [](Input& in) { in.supports.spring.assign(27, -3.0); }, "supports.spring[0]", "-3 N/m"},

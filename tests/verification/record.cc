@@ -48,22 +48,17 @@ bool holds(const Figure& figure) {
   return false;
 }
 
-std::string format(const char* pattern, double value) {
-  char text[64] = "";
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
 std::string describe(const Figure& f) {
   const std::string unit = f.unit == "1" ? "" : " " + f.unit;
-  const std::string measured = f.quantity + ": measured " + format("%.6g", f.measured) + unit;
-  if (f.bound == Bound::kAtMost) return measured + ", at most " + format("%.4g", f.expected) + unit;
-  if (f.bound == Bound::kAtLeast) return measured + ", at least " + format("%.4g", f.expected) + unit;
-  std::string text = measured + ", expected " + format("%.6g", f.expected) + unit;
-  if (f.expected != 0.0) text += format(" (%+.3g %%)", 100.0 * (f.measured / f.expected - 1.0));
+  const std::string measured = f.quantity + ": measured " + with_number("%.6g", f.measured) + unit;
+  if (f.bound == Bound::kAtMost) return measured + ", at most " + with_number("%.4g", f.expected) + unit;
+  if (f.bound == Bound::kAtLeast) return measured + ", at least " + with_number("%.4g", f.expected) + unit;
+  std::string text = measured + ", expected " + with_number("%.6g", f.expected) + unit;
+  if (f.expected != 0.0) text += with_number(" (%+.3g %%)", 100.0 * (f.measured / f.expected - 1.0));
   if (f.bound == Bound::kReported) return text;
   return text + ", tolerance " +
-         (f.bound == Bound::kAbsolute ? format("%.3g", f.tolerance) + unit : format("%.3g %%", 100.0 * f.tolerance));
+         (f.bound == Bound::kAbsolute ? with_number("%.3g", f.tolerance) + unit
+                                      : with_number("%.3g %%", 100.0 * f.tolerance));
 }
 
 json to_json(const Figure& f) {
@@ -111,6 +106,12 @@ std::string without_slashes(std::string name) {
 }
 
 }  // namespace
+
+std::string with_number(const char* pattern, double value) {
+  char text[200] = "";
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
+}
 
 Case::Case(CaseInfo info) : info_(std::move(info)) {
   const size_t slash = info_.id.find('/');

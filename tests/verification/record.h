@@ -53,6 +53,9 @@ struct CaseInfo {
   std::string reference;  ///< where the expected values come from, in a sentence
 };
 
+/// A number in a name: with_number("front after %g s", 10.0). `pattern` is of printf, for one double.
+std::string with_number(const char* pattern, double value);
+
 /// Collects what a test measures. Every call prints measured against expected, asserts what its bound says (as EXPECT_
 /// does: the test goes on and fails) and, where the environment names a folder in LIPOFILL_VERIFICATION_DIR, rewrites
 /// the test's file of that case there, atomically: tests may run in parallel. `deploy/verify` makes

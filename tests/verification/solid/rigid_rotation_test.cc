@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <cstdio>
 
 #include "core/solid/tissue.h"
 #include "tests/unit/solid/box_mesh.h"
+#include "tests/verification/record.h"
 
 namespace lipofill::solid::testing {
 namespace {
+
+using verification::Bound;
+using verification::Case;
 
 HexMesh irregular_slab(bool stacked) {
   const Box box{{5, 4, 3}, {0.05, 0.04, 0.009}, stacked};
@@ -18,7 +21,12 @@ HexMesh irregular_slab(bool stacked) {
   return mesh;
 }
 
-double worst_relative_force(bool stacked) {
+Case make_case() {
+  return Case({"solid/8b-rotation", "Rigid motions of an irregular slab",
+               "None: no internal force, and a turned force of a turned deformation."});
+}
+
+void expect_no_force(const char* name, bool stacked) {
   const HexMesh mesh = irregular_slab(stacked);
   Tissue tissue = Tissue::create(mesh, {{1e5, 0.49, 1000.0}}, {}, {}).value();
   tissue.assemble(1.01 * mesh.rest_positions, 0.01);
@@ -33,16 +41,15 @@ double worst_relative_force(bool stacked) {
     worst = std::max(worst, tissue.internal_force().norm() / reference);
     EXPECT_NEAR(tissue.min_volume_ratio(), 1.0, 1e-12);
   }
-  std::printf("rigid rotation, %s: relative force %.2e, bound 1e-10\n", stacked ? "EAS-9" : "solid-shell", worst);
-  return worst;
+  make_case().record({name, "1", 1e-10, worst, 0.0, Bound::kAtMost});
 }
 
 TEST(RigidRotation, LeavesTheSolidShellAtRest) {
-  EXPECT_LT(worst_relative_force(false), 1e-10);
+  expect_no_force("solid-shell: force relative to that of a 1 % stretch", false);
 }
 
 TEST(RigidRotation, LeavesIncompatibleModesAtRest) {
-  EXPECT_LT(worst_relative_force(true), 1e-10);
+  expect_no_force("incompatible modes: force relative to that of a 1 % stretch", true);
 }
 
 /// A turned tissue answers as it does unturned, only turned.
@@ -57,8 +64,10 @@ TEST(RigidRotation, TurnsTheForceOfADeformation) {
   const double energy = tissue.elastic_energy();
   const Eigen::Matrix3d R = Eigen::AngleAxisd(2.5, Eigen::Vector3d(1, -1, 2).normalized()).toRotationMatrix();
   tissue.assemble(R * x, 0.01);
-  EXPECT_LT((tissue.internal_force().reshaped(3, x.cols()) - R * force).norm(), 1e-11 * force.norm());
-  EXPECT_NEAR(tissue.elastic_energy(), energy, 1e-12 * energy);
+  const double difference = (tissue.internal_force().reshaped(3, x.cols()) - R * force).norm() / force.norm();
+  Case turned = make_case();
+  turned.record({"force of a turned deformation: difference", "1", 1e-11, difference, 0.0, Bound::kAtMost});
+  turned.record({"energy of a turned deformation", "J", energy, tissue.elastic_energy(), 1e-12});
 }
 
 }  // namespace

@@ -20,6 +20,10 @@ struct Basis {
 };
 
 /// Velocity anywhere in the chart, in index coordinates: x = i + fraction, y = j + fraction.
+///
+/// The tangent vectors are interpolated from the sides of cells, g1 from those along xi and g2 from those along eta: a
+/// field without jumps, second order also on the edges. The bilinear tangents of a cell turn and stretch from one cell
+/// to the next, and a velocity carried over an edge would lose a little in every step, however short.
 class VelocityField {
  public:
   VelocityField(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& velocity)
@@ -40,12 +44,13 @@ class VelocityField {
   }
 
   Basis basis(const Vector2d& at) const {
-    const auto [i, s] = split(at.x(), grid_.n_xi);
-    const auto [j, t] = split(at.y(), grid_.n_eta);
-    const auto x = [&](int di, int dj) { return metric_.vertices.col(grid_.vertex(i + di, j + dj)); };
+    const auto along_xi = [&](int i, int j) { return side(i, j, i + 1, j); };
+    const auto along_eta = [&](int i, int j) { return side(i, j, i, j + 1); };
+    const double x = std::clamp(at.x(), 0.0, static_cast<double>(grid_.n_xi));
+    const double y = std::clamp(at.y(), 0.0, static_cast<double>(grid_.n_eta));
     Basis b;
-    b.g1 = (1.0 - t) * (x(1, 0) - x(0, 0)) + t * (x(1, 1) - x(0, 1));
-    b.g2 = (1.0 - s) * (x(0, 1) - x(0, 0)) + s * (x(1, 1) - x(1, 0));
+    b.g1 = extend(along_xi, grid_.n_xi, grid_.n_eta + 1, x - 0.5, y);
+    b.g2 = extend(along_eta, grid_.n_xi + 1, grid_.n_eta, x, y - 0.5);
     b.sqrt_g = b.g1.cross(b.g2).norm();
     return b;
   }
@@ -76,6 +81,23 @@ class VelocityField {
     const double inside = std::clamp(value, 0.0, static_cast<double>(n));
     const int index = std::min(static_cast<int>(inside), n - 1);
     return {index, inside - index};
+  }
+
+  Vector3d side(int i, int j, int i_end, int j_end) const {
+    return metric_.vertices.col(grid_.vertex(i_end, j_end)) - metric_.vertices.col(grid_.vertex(i, j));
+  }
+
+  /// Bilinear between samples at integer places, and on to half a cell beyond the outermost.
+  template <typename Sample>
+  static Vector3d extend(const Sample& samples, int n_x, int n_y, double x, double y) {
+    const int i = std::clamp(static_cast<int>(std::floor(x)), 0, std::max(n_x - 2, 0));
+    const int j = std::clamp(static_cast<int>(std::floor(y)), 0, std::max(n_y - 2, 0));
+    const double s = n_x > 1 ? x - i : 0.0;
+    const double t = n_y > 1 ? y - j : 0.0;
+    const int right = std::min(i + 1, n_x - 1);
+    const int above = std::min(j + 1, n_y - 1);
+    return (1.0 - t) * ((1.0 - s) * samples(i, j) + s * samples(right, j)) +
+           t * ((1.0 - s) * samples(i, above) + s * samples(right, above));
   }
 
   /// Bilinear between samples at integer places, constant beyond the outermost.

@@ -11,10 +11,10 @@ namespace lipofill::film {
 /// at x).
 ///
 /// Paths are traced in the chart by the midpoint rule and stop at walls. The velocity is carried as a vector of space
-/// and made tangential where it arrives, which is parallel transport to second order. Unconditionally stable, first
-/// order in time.
+/// and made tangential where it arrives, which is parallel transport to second order. Unconditionally stable; a step is
+/// of second order in space and time, the whole of first order in time; a step of no length changes nothing.
 /// @param velocity  U, normal velocity times edge length [m2/s] (n_edges)
-/// Checked by tests/unit/film/motion_test.cc.
+/// Checked by tests/unit/film/motion_test.cc and tests/verification/film/manufactured_advection_test.cc.
 Eigen::VectorXd advect_velocity(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& velocity,
                                 double dt);
 

@@ -55,18 +55,6 @@ void check_layers(const FaceGeometrySpec& spec, FieldViolations& violations) {
   }
 }
 
-absl::Status check_spec(const FaceGeometrySpec& spec) {
-  FieldViolations violations;
-  violations.check_range("n_xi", spec.n_xi, kMinDivisions, kMaxDivisions, "");
-  violations.check_range("n_eta", spec.n_eta, kMinDivisions, kMaxDivisions, "");
-  if (const auto* square = std::get_if<SquareSpec>(&spec.region)) {
-    violations.check_range("square.length_xi_mm", square->length_xi * 1e3, kShortestSquareMm, kLongestSquareMm, "mm");
-    violations.check_range("square.length_eta_mm", square->length_eta * 1e3, kShortestSquareMm, kLongestSquareMm, "mm");
-  }
-  check_layers(spec, violations);
-  return violations.to_status();
-}
-
 absl::Status report(const Progress& progress, double fraction, const char* stage) {
   if (!progress || progress(fraction, stage)) return absl::OkStatus();
   return absl::CancelledError("building the geometry was cancelled");
@@ -162,8 +150,35 @@ absl::StatusOr<FaceGeometry> build_scan_region(const ScanRegionSpec& scan, const
 
 }  // namespace
 
+absl::Status check_face_geometry(const FaceGeometrySpec& spec) {
+  FieldViolations violations;
+  violations.check_range("n_xi", spec.n_xi, kMinDivisions, kMaxDivisions, "");
+  violations.check_range("n_eta", spec.n_eta, kMinDivisions, kMaxDivisions, "");
+  if (const auto* square = std::get_if<SquareSpec>(&spec.region)) {
+    violations.check_range("square.length_xi_mm", square->length_xi * 1e3, kShortestSquareMm, kLongestSquareMm, "mm");
+    violations.check_range("square.length_eta_mm", square->length_eta * 1e3, kShortestSquareMm, kLongestSquareMm, "mm");
+  }
+  check_layers(spec, violations);
+  return violations.to_status();
+}
+
+absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& geometry) {
+  FaceGeometrySpec spec;
+  spec.n_xi = geometry.grid.n_xi;
+  spec.n_eta = geometry.grid.n_eta;
+  spec.layers = layers;
+  FieldViolations violations;
+  check_layers(spec, violations);
+  if (!violations.empty()) return violations.to_status();
+  auto grid =
+      extrude_layers(geometry.grid.nodes.leftCols(geometry.grid.nodes_per_level()), spec.n_xi, spec.n_eta, layers);
+  if (!grid.ok()) return grid.status();
+  geometry.grid = *std::move(grid);
+  return absl::OkStatus();
+}
+
 absl::StatusOr<FaceGeometry> build_face_geometry(const FaceGeometrySpec& spec, const Progress& progress) {
-  const absl::Status valid = check_spec(spec);
+  const absl::Status valid = check_face_geometry(spec);
   if (!valid.ok()) return valid;
   auto geometry = std::holds_alternative<SquareSpec>(spec.region)
                       ? build_square(std::get<SquareSpec>(spec.region), spec)

@@ -93,6 +93,13 @@ using Progress = std::function<bool(double fraction, const char* stage)>;
 /// Checked by tests/unit/geometry/.
 absl::StatusOr<FaceGeometry> build_face_geometry(const FaceGeometrySpec& spec, const Progress& progress);
 
+/// What build_face_geometry refuses before it looks at the scan: counts, sides of a square, layers.
+absl::Status check_face_geometry(const FaceGeometrySpec& spec);
+
+/// Lays layers under the skin of a geometry in place of those it has, as build_face_geometry does. FAILED_PRECONDITION
+/// where they fold, and INVALID_ARGUMENT as check_layers.
+absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& geometry);
+
 /// The chart place of a skin point. INVALID_ARGUMENT (field violation "") when it names an unknown landmark, lies more
 /// than 10 mm from the outer skin, or is outside the region by more than 1e-6.
 absl::StatusOr<ChartPoint> locate_in_chart(const FaceGeometry& geometry, const SkinPoint& point);

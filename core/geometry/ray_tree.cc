@@ -65,9 +65,9 @@ namespace {
 
 /// Slab test. A ray within a slab's plane divides 0 by 0: fmin and fmax pass over the not-a-number that gives.
 bool meets_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Eigen::Vector3d& from,
-               const Eigen::Vector3d& inverse) {
+               const Eigen::Vector3d& inverse, double reach) {
   double enter = 0.0;
-  double leave = std::numeric_limits<double>::infinity();
+  double leave = reach;
   for (int c = 0; c < 3; ++c) {
     const double a = (low[c] - from[c]) * inverse[c];
     const double b = (high[c] - from[c]) * inverse[c];
@@ -77,42 +77,67 @@ bool meets_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Ei
   return enter <= leave;
 }
 
-/// Moeller & Trumbore (1997), for both sides of the triangle.
-bool meets_triangle(const Eigen::Vector3d& corner, const Eigen::Vector3d& edge1, const Eigen::Vector3d& edge2,
-                    const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
+/// Moeller & Trumbore (1997), for both sides of the triangle: the distance along the ray, infinity for a miss.
+double meet_triangle(const Eigen::Vector3d& corner, const Eigen::Vector3d& edge1, const Eigen::Vector3d& edge2,
+                     const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
+  constexpr double kMiss = std::numeric_limits<double>::infinity();
   const Eigen::Vector3d p = direction.cross(edge2);
   const double determinant = edge1.dot(p);
-  if (determinant == 0.0) return false;
+  if (determinant == 0.0) return kMiss;
   const Eigen::Vector3d gap = from - corner;
   const double u = gap.dot(p) / determinant;
-  if (u < 0.0 || u > 1.0) return false;
+  if (u < 0.0 || u > 1.0) return kMiss;
   const Eigen::Vector3d q = gap.cross(edge1);
   const double v = direction.dot(q) / determinant;
-  return v >= 0.0 && u + v <= 1.0 && edge2.dot(q) / determinant > 0.0;
+  if (!(v >= 0.0 && u + v <= 1.0)) return kMiss;
+  const double distance = edge2.dot(q) / determinant;
+  return distance > 0.0 ? distance : kMiss;
 }
 
 }  // namespace
 
-bool RayTree::is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const {
-  if (nodes_.empty()) return false;
+template <typename Reach, typename Visit>
+void RayTree::walk(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, const Reach& reach,
+                   const Visit& visit) const {
+  if (nodes_.empty()) return;
   const Eigen::Vector3d inverse = direction.cwiseInverse();
   std::array<int, kMaxDepth> waiting{};
   int n_waiting = 1;
   while (n_waiting > 0) {
     const int at = waiting[--n_waiting];
     const Node& node = nodes_[at];
-    if (!meets_box(node.low, node.high, from, inverse)) continue;
+    if (!meets_box(node.low, node.high, from, inverse, reach())) continue;
     if (node.count == 0) {
       waiting[n_waiting++] = node.second;
       waiting[n_waiting++] = at + 1;
       continue;
     }
     for (int k = node.first; k < node.first + node.count; ++k) {
-      const Triangle& t = triangles_[k];
-      if (meets_triangle(t.corner, t.edge1, t.edge2, from, direction)) return true;
+      if (!visit(triangles_[k])) return;
     }
   }
-  return false;
+}
+
+bool RayTree::is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const {
+  bool blocked = false;
+  walk(
+      from, direction, [] { return std::numeric_limits<double>::infinity(); },
+      [&](const Triangle& t) {
+        blocked = std::isfinite(meet_triangle(t.corner, t.edge1, t.edge2, from, direction));
+        return !blocked;
+      });
+  return blocked;
+}
+
+double RayTree::find_first(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double reach) const {
+  double first = std::numeric_limits<double>::infinity();
+  walk(
+      from, direction, [&] { return std::min(first, reach); },
+      [&](const Triangle& t) {
+        first = std::min(first, meet_triangle(t.corner, t.edge1, t.edge2, from, direction));
+        return true;
+      });
+  return first <= reach ? first : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace lipofill::geometry

@@ -24,19 +24,6 @@ absl::Status report(const Progress& progress, double fraction, const char* stage
   return absl::CancelledError("building the geometry was cancelled");
 }
 
-absl::Status check_scan(const SurfaceMesh& scan) {
-  if (scan.triangles.empty()) return field_violation("scan_region.scan", "has no triangle");
-  if (!scan.points.allFinite()) return field_violation("scan_region.scan", "has a vertex that is not finite");
-  for (const auto& triangle : scan.triangles) {
-    for (const int v : triangle) {
-      if (v >= 0 && v < scan.n_vertices()) continue;
-      return field_violation("scan_region.scan",
-                             absl::StrCat("has a triangle of vertex ", v, ", must be in [0, ", scan.n_vertices(), ")"));
-    }
-  }
-  return absl::OkStatus();
-}
-
 absl::Status check_landmarks(const Landmarks& landmarks, const SurfaceLocator& locator) {
   FieldViolations violations;
   for (const auto& [name, position] : landmarks) {
@@ -168,7 +155,7 @@ absl::StatusOr<SubSurface> extract_outer_skin(const SurfaceMesh& mesh, const Ray
 }  // namespace
 
 absl::StatusOr<ScanRegion> find_scan_region(const ScanRegionSpec& spec, const Progress& progress) {
-  const absl::Status valid = check_scan(spec.scan);
+  const absl::Status valid = check_indices("scan_region.scan", spec.scan);
   if (!valid.ok()) return valid;
   if (const absl::Status go = report(progress, 0.0, "cleaning the scan"); !go.ok()) return go;
   CleanedSurface cleaned = clean_surface(spec.scan);

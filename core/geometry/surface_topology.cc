@@ -5,12 +5,28 @@
 #include <cmath>
 #include <tuple>
 
+#include "absl/strings/str_cat.h"
+#include "core/base/field_violations.h"
+
 namespace lipofill::geometry {
 namespace {
 
 constexpr double kSmallestArea = 1e-12;  // [m2], a millionth of a square millimetre
 
 }  // namespace
+
+absl::Status check_indices(const char* field, const SurfaceMesh& mesh) {
+  if (mesh.triangles.empty()) return field_violation(field, "has no triangle");
+  if (!mesh.points.allFinite()) return field_violation(field, "has a vertex that is not finite");
+  for (const auto& triangle : mesh.triangles) {
+    for (const int v : triangle) {
+      if (v >= 0 && v < mesh.n_vertices()) continue;
+      return field_violation(field,
+                             absl::StrCat("has a triangle of vertex ", v, ", must be in [0, ", mesh.n_vertices(), ")"));
+    }
+  }
+  return absl::OkStatus();
+}
 
 std::vector<EdgeUse> sort_edge_uses(const SurfaceMesh& mesh) {
   std::vector<EdgeUse> uses;

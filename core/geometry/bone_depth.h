@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "absl/status/statusor.h"
+#include "core/geometry/layered_grid.h"
+#include "core/geometry/surface_mesh.h"
+
+namespace lipofill::geometry {
+
+/// Distance from the skin to the bone.
+struct BoneDepth {
+  Eigen::VectorXd depth;        ///< [m] along the inward normal, a value a node of the skin; filled and smoothed
+  double measured_share = 0.0;  ///< of the nodes, where the ray met bone
+};
+
+/// Deeper bone than this belongs to another part of the head [m].
+inline constexpr double kDeepestBone = 0.060;
+/// Of the nodes at least this share must meet bone.
+inline constexpr double kLeastMeasuredShare = 0.25;
+
+/// Casts a ray from every node of the skin along its inward normal onto the bone. Nodes whose ray meets none within
+/// kDeepestBone take the harmonic continuation of those around (no value outside the measured range); then features
+/// shorter than about four times the spacing of the grid fade (smooth_over_grid).
+/// @param grid  of which the skin alone is used
+/// @param bone  any surface; its orientation does not matter
+/// INVALID_ARGUMENT (field "scan_region.bone_scan") for a broken surface, FAILED_PRECONDITION when less than
+/// kLeastMeasuredShare of the rays meet bone, with the share. Second order in the spacing of a smooth bone. Checked by
+/// tests/unit/geometry/bone_depth_test.cc: a sphere out of the middle of another.
+absl::StatusOr<BoneDepth> measure_bone_depth(const LayeredGrid& grid, const SurfaceMesh& bone);
+
+}  // namespace lipofill::geometry

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/anatomy/tissue_presets.h"
 #include "core/geometry/face_geometry.h"
 #include "core/solid/material.h"
 
@@ -18,10 +21,19 @@ struct Support {
   double stiffness = 0.0;  ///< [Pa/m], kElastic only
 };
 
+/// A layer takes what the others leave of the distance from skin to bone.
+struct DownToBone {
+  double min_thickness = 1e-3;   ///< [m] less anywhere is an error
+  double max_thickness = 30e-3;  ///< [m] where bone lies deeper the layer ends here
+};
+
 struct TissueLayerSpec {
   std::string name;
-  geometry::LayerGeometry geometry;
+  geometry::LayerGeometry geometry;  ///< in a built model, the thickness it has
   solid::ElasticMaterial material;
+  std::optional<anatomy::TissueKind> kind = std::nullopt;
+  bool regional_thickness = false;  ///< published figures of the kind in some regions, the thickness outside
+  std::optional<DownToBone> down_to_bone = std::nullopt;  ///< in place of the thickness
 };
 
 /// All that a model is made from; lipofill.v1.ModelSpec in SI.
@@ -32,6 +44,21 @@ struct FaceModelSpec {
   std::vector<TissueLayerSpec> layers;
   Support rim;
   Support base;
+  std::optional<geometry::SurfaceMesh> bone;  ///< in the frame of the scan
+};
+
+/// Thickness of a layer over the nodes of the chart [m].
+struct ThicknessRange {
+  double min = 0.0;
+  double mean = 0.0;
+  double max = 0.0;
+};
+
+/// What was found of the bone; shares are of the nodes of the chart.
+struct BoneFinding {
+  double measured_share = 0.0;  ///< where a ray met bone
+  double limited_share = 0.0;   ///< where the layer ends above the bone, at its greatest thickness
+  ThicknessRange depth;         ///< from the skin
 };
 
 /// A patient's layered face model. Immutable once built and shared between simulations.
@@ -40,6 +67,8 @@ struct FaceModel {
   std::vector<TissueLayerSpec> layers;
   Support rim;
   Support base;
+  std::vector<ThicknessRange> thickness;  ///< of each layer
+  std::optional<BoneFinding> bone;
   bool is_square = false;
   std::string content_hash;  ///< SHA-256 of everything a simulation depends on
 };

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/base/field_violations.h"
 #include "core/geometry/face_geometry.h"

@@ -1,0 +1,142 @@
+// What no scheme may lose: volume, what walls hold, and the balance of forces between the film and its two walls.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "core/coupling/gap_volume.h"
+#include "core/simulation/film_layout.h"
+#include "core/simulation/tissue_setup.h"
+#include "tests/verification/film/film_cases.h"
+#include "tests/verification/record.h"
+
+namespace lipofill::verification {
+namespace {
+
+using geometry::ChartPoint;
+using geometry::ScalarField;
+
+constexpr double kSide = 0.04;
+
+/// Skin over a deeper layer on bone: both walls of the film between them give way.
+std::shared_ptr<const simulation::FaceModel> make_two_layers() {
+  simulation::FaceModelSpec spec;
+  spec.region = geometry::SquareSpec{kSide, kSide};
+  spec.n_xi = spec.n_eta = 16;
+  spec.layers = {{"skin", {ScalarField::constant(2e-3), 1}, {2e5, 0.45, 1100.0}},
+                 {"fat", {ScalarField::constant(6e-3), 2}, {2e4, 0.48, 950.0}}};
+  auto model = simulation::build_face_model(spec, nullptr);
+  EXPECT_TRUE(model.ok()) << model.status();
+  return *model;
+}
+
+/// A film of two zones side by side, their common edge sealed; fat goes into the left one at a point.
+simulation::SimulationSpec make_two_zones(simulation::FilmWallKind wall) {
+  simulation::SimulationSpec spec;
+  spec.films = {make_film(wall, 8, 8)};
+  spec.films[0].wall_stiffness = wall == simulation::FilmWallKind::kWinkler ? 1e6 : 0.0;
+  if (wall == simulation::FilmWallKind::kTissue) spec.films[0].below_layer = "skin";
+  spec.films[0].zones = {{"left", simulation::ChartBox{0.0, 0.5, 0.0, 1.0}},
+                         {"right", simulation::ChartBox{0.5, 1.0, 0.0, 1.0}}};
+  spec.films[0].rest_thickness = ScalarField::constant(0.1e-3);
+  spec.injections = {{"left", 0.5e-6, 1e-6, 0.0, ChartPoint{0.3, 0.4}}};
+  spec.step = 0.02;
+  spec.end = 1.0;
+  spec.settle_skin_speed = 0.0;
+  return spec;
+}
+
+struct Ledger {
+  double volume_error = 0.0;  ///< worst over all steps, share of what was injected
+  double gap_error = 0.0;
+  double leaked = 0.0;  ///< change of the unfed zone's volume, share of what was injected
+};
+
+/// What the injected volume, the film's and the zones' say, every step.
+Ledger keep_ledger(simulation::FilmWallKind wall) {
+  const simulation::SimulationSpec spec = make_two_zones(wall);
+  auto simulation = make_simulation(make_two_layers(), spec);
+  if (!simulation) return {1.0, 1.0, 1.0};
+  const double rest = simulation->zone_reports()[1].volume;
+  Ledger ledger;
+  while (simulation->phase() == simulation::Phase::kRunning) {
+    simulation->advance_step();
+    const simulation::StepReport& report = simulation->report();
+    const auto share = [&](double volume) { return std::abs(volume) / report.injected; };
+    ledger.volume_error =
+        std::max(ledger.volume_error, share(report.film_volume - report.initial_volume - report.injected));
+    ledger.gap_error = std::max(ledger.gap_error, share(report.gap_volume - report.film_volume));
+    ledger.leaked = std::max(ledger.leaked, share(simulation->zone_reports()[1].volume - rest));
+  }
+  EXPECT_EQ(simulation->phase(), simulation::Phase::kFinished) << simulation->reason();
+  EXPECT_NEAR(simulation->report().injected, 0.5e-6, 1e-18);
+  return ledger;
+}
+
+TEST(Conservation, VolumeAndSealedEdges) {
+  Case ledger_case({"conservation/1-volume", "Volume and sealed edges, every step of an injection",
+                    "None: what is injected is in the film, and none of it beyond a sealed edge."});
+  const Ledger tissue = keep_ledger(simulation::FilmWallKind::kTissue);
+  const Ledger winkler = keep_ledger(simulation::FilmWallKind::kWinkler);
+  ledger_case.record(
+      {"film below tissue: |film - injected|/injected", "1", 1e-12, tissue.volume_error, 0.0, Bound::kAtMost});
+  ledger_case.record({"film below tissue: |gap - film|/injected", "1", 1e-4, tissue.gap_error, 0.0, Bound::kAtMost});
+  ledger_case.record({"film below tissue: leaked into the next zone", "1", 1e-12, tissue.leaked, 0.0, Bound::kAtMost});
+  ledger_case.record(
+      {"Winkler wall: |film - injected|/injected", "1", 1e-12, winkler.volume_error, 0.0, Bound::kAtMost});
+  ledger_case.record({"Winkler wall: leaked into the next zone", "1", 1e-12, winkler.leaked, 0.0, Bound::kAtMost});
+}
+
+/// Share of the pressure's forces that is left when those on both walls are added up, and of their moments about the
+/// middle.
+struct Imbalance {
+  double force = 0.0;
+  double torque = 0.0;
+};
+
+Imbalance add_up(const Eigen::Matrix3Xd& force, const Eigen::Matrix3Xd& x) {
+  Eigen::Vector3d net = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  double forces = 0.0;
+  double moments = 0.0;
+  const Eigen::Vector3d middle = x.rowwise().mean();
+  for (Eigen::Index a = 0; a < x.cols(); ++a) {
+    const Eigen::Vector3d arm = x.col(a) - middle;
+    net += force.col(a);
+    moment += arm.cross(Eigen::Vector3d(force.col(a)));
+    forces += force.col(a).norm();
+    moments += arm.norm() * force.col(a).norm();
+  }
+  return {net.norm() / forces, moment.norm() / moments};
+}
+
+/// B^T p of an uneven pressure, with every node free to feel it and the walls bent apart.
+TEST(Conservation, ActionEqualsReaction) {
+  const auto model = make_two_layers();
+  const simulation::SimulationSpec spec = make_two_zones(simulation::FilmWallKind::kTissue);
+  const auto layout = simulation::place_film(*model, spec.films[0]);
+  ASSERT_TRUE(layout.ok()) << layout.status();
+  const simulation::HeldMesh held = simulation::hold_mesh(*model, {*layout});
+  Eigen::Matrix3Xd x = held.split.mesh.rest_positions;
+  for (int a = 0; a < x.cols(); ++a) {
+    const Eigen::Vector3d X = x.col(a);
+    x.col(a) += 1e-3 * Eigen::Vector3d(std::sin(90.0 * X[1] + 0.1 * a), std::cos(70.0 * X[0]), std::sin(1.7 * a));
+  }
+  std::vector<int> free_dofs(3 * x.cols());
+  for (size_t k = 0; k < free_dofs.size(); ++k) free_dofs[k] = static_cast<int>(k);
+  coupling::GapVolume gap(model->geometry.grid, held.walls[0], layout->grid, free_dofs,
+                          static_cast<int>(free_dofs.size()));
+  gap.evaluate(x);
+  Eigen::VectorXd pressure(layout->grid.n_cells());
+  for (int i = 0; i < pressure.size(); ++i) pressure[i] = 1e3 * (1.0 + std::sin(2.3 * i));
+  const Eigen::VectorXd force = gap.derivative().transpose() * pressure;
+  ASSERT_GT(force.norm(), 0.0);
+  const Imbalance left = add_up(force.reshaped(3, x.cols()), x);
+  Case reaction({"conservation/2-reaction", "The film's force on its two walls, B^T p of an uneven pressure",
+                 "None: action equals reaction."});
+  reaction.record({"net force, share of all forces", "1", 1e-13, left.force, 0.0, Bound::kAtMost});
+  reaction.record({"net moment, share of all moments", "1", 1e-13, left.torque, 0.0, Bound::kAtMost});
+}
+
+}  // namespace
+}  // namespace lipofill::verification

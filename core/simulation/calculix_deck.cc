@@ -32,8 +32,8 @@ std::string set_name(const char* kind, size_t index, const std::string& name) {
   constexpr size_t kLongestName = 40;
   std::string safe;
   for (const char c : name.substr(0, kLongestName)) {
-    safe += absl::ascii_isalnum(static_cast<unsigned char>(c)) ? absl::ascii_toupper(static_cast<unsigned char>(c))
-                                                               : '_';
+    safe +=
+        absl::ascii_isalnum(static_cast<unsigned char>(c)) ? absl::ascii_toupper(static_cast<unsigned char>(c)) : '_';
   }
   return absl::StrCat(kind, index + 1, "_", safe);
 }
@@ -77,7 +77,8 @@ struct Section {
 
 constexpr char kHeading[] =
     "*HEADING\n"
-    "Tissue of a Lipofill simulation under the pressure of its films. Research and planning aid, not a medical device.\n"
+    "Tissue of a Lipofill simulation under the pressure of its films. Research and planning aid, not a medical "
+    "device.\n"
     "** Units: mm, N, MPa, tonne, s. Made for CalculiX; solve with: ccx NAME, the file being NAME.inp.\n"
     "** Nodes are doubled where a film opens. Rest shape, static: no inertia, no damping.\n";
 
@@ -205,9 +206,8 @@ void CalculixDeck::Content::add_springs() {
 
 void CalculixDeck::Content::add_surface(const std::string& name, const std::vector<LoadedFace>& faces) {
   if (faces.empty()) return;
-  sections.push_back({absl::StrCat("*SURFACE, NAME=", name, ", TYPE=ELEMENT\n"), faces.size(), [&faces](size_t k) {
-                        return absl::StrCat(faces[k].element, ", S", faces[k].face, "\n");
-                      }});
+  sections.push_back({absl::StrCat("*SURFACE, NAME=", name, ", TYPE=ELEMENT\n"), faces.size(),
+                      [&faces](size_t k) { return absl::StrCat(faces[k].element, ", S", faces[k].face, "\n"); }});
 }
 
 void CalculixDeck::Content::add_loads() {
@@ -250,7 +250,8 @@ CalculixDeck::~CalculixDeck() = default;
 absl::StatusOr<CalculixDeck> CalculixDeck::create(const FaceModel& model, const SimulationSpec& spec,
                                                   const std::vector<Eigen::VectorXd>& pressures) {
   const geometry::LayeredGrid& grid = model.geometry.grid;
-  if (grid.n_layers() == 0) return absl::FailedPreconditionError("the model has no layers: there is no tissue to write");
+  if (grid.n_layers() == 0)
+    return absl::FailedPreconditionError("the model has no layers: there is no tissue to write");
   if (pressures.size() != spec.films.size()) {
     return absl::InvalidArgumentError(
         absl::StrCat("there are pressures of ", pressures.size(), " films, must be ", spec.films.size()));

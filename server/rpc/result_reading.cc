@@ -43,28 +43,23 @@ class SeriesFiller {
   size_t bytes_ = 0;
 };
 
-struct Result {
-  v1::MeshSlice meshes;
-  v1::FrameSlice frame;
-};
-
-absl::StatusOr<Result> capture(Session& session, const std::string& mesh) {
+absl::StatusOr<PresentResult> capture(Session& session, const std::vector<std::string>& meshes) {
   using Captured = std::pair<std::shared_ptr<const Topology>, std::shared_ptr<const Frame>>;
   auto answer = std::make_shared<std::promise<Captured>>();
-  session.capture({mesh}, [answer](std::shared_ptr<const Topology> topology, std::shared_ptr<const Frame> frame) {
+  session.capture(meshes, [answer](std::shared_ptr<const Topology> topology, std::shared_ptr<const Frame> frame) {
     answer->set_value({std::move(topology), std::move(frame)});
   });
   const auto [topology, frame] = answer->get_future().get();
   if (topology == nullptr || frame == nullptr) {
     return absl::ResourceExhaustedError("the fields of the simulation cannot be taken");
   }
-  return Result{to_whole_meshes(*topology, {mesh}), to_whole_frame(*frame, {mesh})};
+  return PresentResult{to_whole_meshes(*topology, meshes), to_whole_frame(*frame, meshes)};
 }
 
-absl::StatusOr<Result> read_result(Backend& backend, const std::string& id) {
+absl::StatusOr<PresentResult> read_result(Backend& backend, const std::string& id) {
   const auto kept = backend.store.get_result(id);
   if (!kept.ok()) return kept.status();
-  Result result;
+  PresentResult result;
   if (!result.meshes.ParseFromString(kept->meshes_message) || !result.frame.ParseFromString(kept->frame_message)) {
     return absl::DataLossError(absl::StrCat("the result of ", simulation_name(id), " cannot be read"));
   }
@@ -96,6 +91,12 @@ absl::Status read_series(Backend& backend, const std::string& id, uint64_t after
   return absl::OkStatus();
 }
 
+absl::StatusOr<PresentResult> read_present(Backend& backend, const std::string& id,
+                                           const std::vector<std::string>& meshes) {
+  const auto session = backend.sessions.find(id);
+  return session != nullptr ? capture(*session, meshes) : read_result(backend, id);
+}
+
 absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::EvaluateSimulationRequest& request) {
   const auto id = parse_simulation_name(request.name(), "name");
   if (!id.ok()) return id.status();
@@ -107,9 +108,7 @@ absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::E
   if (!target.ok()) return target.status();
   const auto model = backend.load_model(record->model);
   if (!model.ok()) return model.status();
-  const auto session = backend.sessions.find(*id);
-  const auto result =
-      session != nullptr ? capture(*session, (*model)->is_square ? "skin" : "scan") : read_result(backend, *id);
+  const auto result = read_present(backend, *id, {(*model)->is_square ? "skin" : "scan"});
   if (!result.ok()) return result.status();
   const auto patch = make_skin_patch(**model, result->meshes, result->frame);
   if (!patch.ok()) return patch.status();

@@ -6,6 +6,7 @@
 #include "server/rpc/result_reading.h"
 #include "server/rpc/simulation_conversion.h"
 #include "server/rpc/simulation_creation.h"
+#include "server/rpc/tissue_deck.h"
 #include "server/rpc/unary.h"
 #include "server/rpc/violation_prefix.h"
 #include "server/store/sqlite_store.h"
@@ -182,6 +183,11 @@ Reactor* SimulationService::EvaluateSimulation(Context* context, const v1::Evalu
     if (evaluation.ok()) *response = *std::move(evaluation);
     return evaluation.status();
   });
+}
+
+grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* SimulationService::ExportTissueDeck(
+    Context*, const v1::ExportTissueDeckRequest* request) {
+  return export_tissue_deck(backend_, *request);
 }
 
 }  // namespace lipofill::server

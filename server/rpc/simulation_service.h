@@ -35,6 +35,8 @@ class SimulationService : public v1::SimulationService::CallbackService {
   Reactor* GetSeries(Context* context, const v1::GetSeriesRequest* request, v1::GetSeriesResponse* response) override;
   Reactor* EvaluateSimulation(Context* context, const v1::EvaluateSimulationRequest* request,
                               v1::Evaluation* response) override;
+  grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* ExportTissueDeck(
+      Context* context, const v1::ExportTissueDeckRequest* request) override;
 
  private:
   using Act = std::function<void(Session& session, Session::Reply reply)>;

@@ -1,0 +1,126 @@
+#include "server/rpc/tissue_deck.h"
+
+#include <cstring>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/simulation/calculix_deck.h"
+#include "server/rpc/names.h"
+#include "server/rpc/result_reading.h"
+#include "server/rpc/simulation_conversion.h"
+#include "server/rpc/unary.h"
+#include "server/store/sqlite_store.h"
+
+namespace lipofill::server {
+namespace {
+
+using simulation::CalculixDeck;
+
+constexpr size_t kMaxPieceBytes = size_t{1} << 20;
+
+struct TimedDeck {
+  CalculixDeck deck;
+  double time_s = 0.0;
+};
+
+/// Sends a deck piece by piece, each made once the one before is on its way.
+class DeckStream : public grpc::ServerWriteReactor<v1::ExportTissueDeckResponse> {
+ public:
+  void send(TimedDeck deck) {
+    deck_.emplace(std::move(deck));
+    piece_.set_time_s(deck_->time_s);
+    send_next();
+  }
+  void fail(const absl::Status& status) { Finish(to_grpc_status(status)); }
+
+  void OnWriteDone(bool ok) override {
+    if (!ok) return fail(absl::CancelledError("the client has gone"));
+    send_next();
+  }
+  void OnDone() override { delete this; }
+
+ private:
+  void send_next() {
+    const absl::Status made = guarded([this] {
+      piece_.set_data(deck_->deck.read(kMaxPieceBytes));
+      return absl::OkStatus();
+    });
+    if (!made.ok()) return fail(made);
+    if (piece_.data().empty()) return Finish(grpc::Status::OK);
+    StartWrite(&piece_);
+  }
+
+  std::optional<TimedDeck> deck_;
+  v1::ExportTissueDeckResponse piece_;
+};
+
+absl::StatusOr<Eigen::VectorXd> find_pressure(const v1::FrameSlice& frame, const std::string& film) {
+  const std::string name = absl::StrCat("film/", film, ".pressure");
+  for (const v1::ArraySlice& array : frame.fields()) {
+    if (array.name() != name) continue;
+    Eigen::VectorXf values(static_cast<Eigen::Index>(array.data().size() / sizeof(float)));
+    std::memcpy(values.data(), array.data().data(), static_cast<size_t>(values.size()) * sizeof(float));
+    return values.cast<double>();
+  }
+  return absl::DataLossError(absl::StrCat("the result has no array ", name));
+}
+
+absl::StatusOr<TimedDeck> make_deck(Backend& backend, const std::string& id) {
+  const auto record = backend.store.get_simulation(id);
+  if (!record.ok()) return record.status();
+  v1::SimulationSpec message;
+  if (!message.ParseFromString(record->spec_message)) return absl::DataLossError("the plan cannot be read");
+  const auto spec = to_simulation_spec(message);
+  if (!spec.ok()) return spec.status();
+  const auto model = backend.load_model(record->model);
+  if (absl::IsNotFound(model.status())) {
+    return absl::FailedPreconditionError(
+        absl::StrCat(simulation_name(id), " has outlived its model: ", record->model, " was deleted"));
+  }
+  if (!model.ok()) return model.status();
+  std::vector<std::string> films;
+  for (const simulation::FilmSpec& film : spec->films) films.push_back("film/" + film.name);
+  const auto present = read_present(backend, id, films);
+  if (!present.ok()) return present.status();
+  std::vector<Eigen::VectorXd> pressures;
+  for (const simulation::FilmSpec& film : spec->films) {
+    auto pressure = find_pressure(present->frame, film.name);
+    if (!pressure.ok()) return pressure.status();
+    pressures.push_back(*std::move(pressure));
+  }
+  auto deck = CalculixDeck::create(**model, *spec, pressures);
+  if (!deck.ok()) return deck.status();
+  return TimedDeck{*std::move(deck), present->frame.time_s()};
+}
+
+}  // namespace
+
+grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* export_tissue_deck(Backend& backend,
+                                                                           const v1::ExportTissueDeckRequest& request) {
+  auto* stream = new DeckStream;
+  absl::Status valid = check_message(request);
+  const auto id = parse_simulation_name(request.name(), "name");
+  valid.Update(id.status());
+  if (!valid.ok()) {
+    stream->fail(valid);
+    return stream;
+  }
+  const bool taken = backend.calls.run([&backend, stream, id = *id] {
+    std::optional<TimedDeck> deck;
+    const absl::Status made = guarded([&]() -> absl::Status {
+      auto ready = make_deck(backend, id);
+      if (ready.ok()) deck.emplace(*std::move(ready));
+      return ready.status();
+    });
+    if (made.ok()) {
+      stream->send(*std::move(deck));
+    } else {
+      stream->fail(made);
+    }
+  });
+  if (!taken) stream->fail(absl::ResourceExhaustedError("too many long calls are waiting"));
+  return stream;
+}
+
+}  // namespace lipofill::server

@@ -30,6 +30,7 @@ Tissue::Tissue(HexMesh mesh, const std::vector<ElasticMaterial>& materials, Node
       elements_(std::make_unique<const ElementAssembler>(mesh_, materials, pattern_)),
       geometric_stiffness_(mesh_, materials, pattern_),
       prestress_(mesh_, materials, pattern_),
+      barrier_(mesh_, materials),
       springs_(springs, mesh_.rest_positions, pattern_),
       geometric_values_(pattern_.matrix().nonZeros()),
       stiffness_values_(pattern_.matrix().nonZeros() + 1),
@@ -78,6 +79,7 @@ void Tissue::assemble(const Eigen::Matrix3Xd& x, double dt) {
   geometric_stiffness_.add(x, geometric_values_);
   prestress_.add_stiffness(geometric_values_);
   elastic_energy_ += prestress_.add_force(x, padded_force_);
+  elastic_energy_ += barrier_.add(x, pattern_, geometric_values_, padded_force_);
   elastic_energy_ += springs_.add(x, stiffness_values_, geometric_values_, padded_force_);
   add_supports(x);
   internal_force_ = padded_force_.head(n_dofs());

@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "core/solid/geometric_stiffness.h"
 #include "core/solid/hex_mesh.h"
+#include "core/solid/inversion_barrier.h"
 #include "core/solid/material.h"
 #include "core/solid/prestress.h"
 #include "core/solid/system_pattern.h"
@@ -112,6 +113,7 @@ class Tissue {
   std::vector<int> diagonal_;  ///< where the diagonal value of each degree of freedom is
   GeometricStiffness geometric_stiffness_;
   Prestress prestress_;
+  InversionBarrier barrier_;
   WallSprings springs_;
   Eigen::VectorXd geometric_values_;  ///< K_G in the pattern [N/m]
   Eigen::VectorXd stiffness_values_;  ///< K in the pattern, then one place for what is not kept [N/m]

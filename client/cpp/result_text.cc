@@ -22,7 +22,9 @@ std::string series_header(const v1::SimulationSpec& spec) {
   for (const v1::Probe& probe : spec.probes()) {
     absl::StrAppend(&header, ",probe_", probe.name(), "_thickness_mm,probe_", probe.name(), "_pressure_pa");
   }
-  return header + ",wall_ms\n";
+  return header +
+         ",wall_ms,rejected_steps,error_estimate_mm,void_volume_ml,elastic_energy_mj,injection_work_mj,"
+         "film_dissipation_mj,ligament_tension_n,broken_ligament_points,closed_cells\n";
 }
 
 }  // namespace
@@ -36,6 +38,16 @@ std::string summary_json(const std::string& plan, const v1::Simulation& simulati
                      {"mean_pressure_pa", zone.mean_pressure_pa()},
                      {"max_thickness_mm", zone.max_thickness_mm()}});
   }
+  nlohmann::ordered_json ligaments = nlohmann::ordered_json::array();
+  for (const v1::LigamentSummary& ligament : summary.ligaments()) {
+    ligaments.push_back({{"name", ligament.name()},
+                         {"tension_n", ligament.tension_n()},
+                         {"largest_length_mm", ligament.largest_length_mm()},
+                         {"points", ligament.points()},
+                         {"broken_points", ligament.broken_points()}});
+  }
+  nlohmann::ordered_json settling_error;  // null while the skin's speed rises
+  if (summary.has_settling_error_mm()) settling_error = summary.settling_error_mm();
   const nlohmann::ordered_json document = {
       {"plan", plan},
       {"state", state_name(simulation.state())},
@@ -61,6 +73,17 @@ std::string summary_json(const std::string& plan, const v1::Simulation& simulati
       {"min_scaled_jacobian", summary.min_scaled_jacobian()},
       {"state_hash", summary.state_hash()},
       {"zones", zones},
+      {"rejected_steps", summary.rejected_steps()},
+      {"error_estimate_mm", summary.error_estimate_mm()},
+      {"settling_error_mm", settling_error},
+      {"void_volume_ml", summary.void_volume_ml()},
+      {"undelivered_ml", summary.undelivered_ml()},
+      {"elastic_energy_mj", summary.elastic_energy_mj()},
+      {"kinetic_energy_mj", summary.kinetic_energy_mj()},
+      {"injection_work_mj", summary.injection_work_mj()},
+      {"film_dissipation_mj", summary.film_dissipation_mj()},
+      {"closed_cells", summary.closed_cells()},
+      {"ligaments", ligaments},
   };
   return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
@@ -69,9 +92,11 @@ std::string summary_text(const std::string& plan, const v1::Simulation& simulati
   const v1::Summary& s = simulation.summary();
   std::string text = absl::StrFormat("%s: %s", plan, state_name(simulation.state()));
   if (!simulation.reason().empty()) absl::StrAppend(&text, " (", simulation.reason(), ")");
-  absl::StrAppendFormat(&text,
-                        "\n  time         %.2f s simulated in %u steps; %.1f s of computing, median step %.1f ms\n",
-                        s.time_s(), s.steps(), s.wall_s(), s.step_ms_median());
+  absl::StrAppendFormat(
+      &text,
+      "\n  time         %.2f s simulated in %u steps, %u taken back; %.1f s of computing, median step "
+      "%.1f ms\n",
+      s.time_s(), s.steps(), s.rejected_steps(), s.wall_s(), s.step_ms_median());
   absl::StrAppendFormat(&text, "  model        %u hexahedra, %u film cells, %u unknowns; worst scaled Jacobian %.2f\n",
                         s.hexahedra(), s.film_cells(), s.dofs(), s.min_scaled_jacobian());
   absl::StrAppendFormat(&text,
@@ -84,6 +109,24 @@ std::string summary_text(const std::string& plan, const v1::Simulation& simulati
   absl::StrAppendFormat(&text, "  film         %.2f mm thick at most\n", s.max_thickness_mm());
   absl::StrAppendFormat(&text, "  skin         moved %.2f mm at most; volume changed by %.2f mL\n",
                         s.skin_max_displacement_mm(), s.skin_volume_change_ml());
+  if (s.has_settling_error_mm()) {
+    absl::StrAppendFormat(&text, "               %.3f mm still to go, judged by how its speed falls\n",
+                          s.settling_error_mm());
+  }
+  if (s.undelivered_ml() < 0.0) {
+    absl::StrAppendFormat(&text, "  taken out    %.3f mL less than planned: there was no more\n", -s.undelivered_ml());
+  }
+  if (s.void_volume_ml() > 0.0) {
+    absl::StrAppendFormat(&text, "  void         %.4f mL behind the front, at the suction limit\n", s.void_volume_ml());
+  }
+  if (s.closed_cells() > 0) {
+    absl::StrAppendFormat(&text, "  tissue       %u film cells not entered yet\n", s.closed_cells());
+  }
+  for (const v1::LigamentSummary& ligament : s.ligaments()) {
+    absl::StrAppendFormat(&text, "  ligament %-20s %.2f N, walls %.2f mm apart, %u of %u points broken\n",
+                          ligament.name(), ligament.tension_n(), ligament.largest_length_mm(), ligament.broken_points(),
+                          ligament.points());
+  }
   for (const v1::ZoneSummary& zone : s.zones()) {
     absl::StrAppendFormat(&text, "  zone %-24s %.2f mL, %.2f kPa mean, %.2f mm at most\n", zone.name(),
                           zone.volume_ml(), zone.mean_pressure_pa() / 1e3, zone.max_thickness_mm());
@@ -105,7 +148,12 @@ std::string series_csv(const v1::SimulationSpec& spec, const std::vector<v1::Ser
       absl::StrAppend(&csv, ",", i < row.probe_thickness_mm_size() ? number(row.probe_thickness_mm(i)) : "");
       absl::StrAppend(&csv, ",", i < row.probe_pressure_pa_size() ? number(row.probe_pressure_pa(i)) : "");
     }
-    absl::StrAppend(&csv, ",", number(row.wall_ms()), "\n");
+    absl::StrAppend(&csv, ",", number(row.wall_ms()), ",", row.rejected_steps());
+    for (double value : {row.error_estimate_mm(), row.void_volume_ml(), row.elastic_energy_mj(),
+                         row.injection_work_mj(), row.film_dissipation_mj(), row.ligament_tension_n()}) {
+      absl::StrAppend(&csv, ",", number(value));
+    }
+    absl::StrAppend(&csv, ",", row.broken_ligament_points(), ",", row.closed_cells(), "\n");
   }
   return csv;
 }

@@ -1,11 +1,8 @@
 #include "core/coupling/film_solve.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace lipofill::coupling {
 namespace {
@@ -17,144 +14,142 @@ constexpr int kFreeDirectionIterations = 12;
 constexpr int kUndampedIterations = 20;
 constexpr double kTolerance = 1e-10;
 
-/// One linear solve (dt J + C) p = d.
-class PressureSolver {
+constexpr int kMaxNewtonIterations = 60;
+constexpr int kMaxLineSearch = 30;
+/// Largest mismatch of a cell's gap and volume, relative to the fullest cell.
+constexpr double kPressureTolerance = 1e-11;
+/// While the thickness is still far from settled, pressures need not be better than this share of its change.
+constexpr double kEarlyTolerance = 1e-3;
+/// A step along Newton's direction is taken once it has used up this share of the descent.
+constexpr double kSlopeShare = 0.8;
+
+/// Pressures of all films at fixed thickness.
+class PressureProblem {
  public:
-  PressureSolver(const std::vector<film::FilmProjection*>& films, const WallCompliance& walls, int n)
-      : films_(films), walls_(walls), n_(n) {
-    find_rigid_components(walls.full != nullptr ? Eigen::VectorXd(walls.full->diagonal()) : walls.diagonal);
+  PressureProblem(const std::vector<film::FilmProjection*>& films, const WallCompliance& walls,
+                  const Eigen::VectorXd& gap_without_pressure, const Eigen::VectorXd& lowest)
+      : films_(films),
+        walls_(walls),
+        gap_(gap_without_pressure),
+        lowest_(lowest),
+        solver_(films, walls, static_cast<int>(gap_without_pressure.size())),
+        held_(gap_without_pressure.size(), 0) {
+    for (const film::FilmProjection* film : films) is_linear_ = is_linear_ && film->is_linear();
   }
 
-  bool solve(const Eigen::VectorXd& d, Eigen::VectorXd& p) {
-    return walls_.full != nullptr ? solve_full(d, p) : solve_sparse(d, p);
+  /// Improves `result.pressure`; volume, void and flux follow. False: it cannot.
+  bool solve(double tolerance, FilmSolveResult& result) {
+    if (has_limit()) result.pressure = result.pressure.cwiseMax(lowest_);
+    Eigen::VectorXd r = evaluate(result);
+    double last = std::numeric_limits<double>::infinity();
+    for (int iteration = 0; iteration < kMaxNewtonIterations; ++iteration) {
+      hold_cells_at_the_limit(result.pressure, r);
+      const double error = mismatch(r, result.volume);
+      if (error <= tolerance) return keep_void(r, result);
+      const bool at_round_off = error <= 100.0 * tolerance && error > 0.5 * last;
+      if (at_round_off) return keep_void(r, result);
+      last = error;
+      Eigen::VectorXd dp;
+      if (!solver_.solve(result.pressure, held_, r, dp)) return false;
+      r = advance(dp, r, result);
+      if (!r.allFinite()) return false;
+    }
+    return false;
   }
 
  private:
-  bool solve_full(const Eigen::VectorXd& d, Eigen::VectorXd& p) {
-    system_ = *walls_.full;
-    for_each_entry([&](int row, int column, double value) { system_(row, column) += value; });
-    for (const int i : gauge_cells_) system_(i, i) *= 2.0;
-    dense_.compute(system_);
-    if (dense_.info() != Eigen::Success) return false;
-    p = dense_.solve(d);
-    return p.allFinite();
-  }
+  bool has_limit() const { return lowest_.size() > 0; }
 
-  bool solve_sparse(const Eigen::VectorXd& d, Eigen::VectorXd& p) {
-    std::vector<Eigen::Triplet<double>> triplets;
-    triplets.reserve(10 * static_cast<size_t>(n_));
-    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n_);
-    for_each_entry([&](int row, int column, double value) {
-      triplets.emplace_back(row, column, value);
-      if (row == column) diagonal[row] = value;
-    });
-    for (int i = 0; i < n_; ++i) triplets.emplace_back(i, i, walls_.diagonal[i]);
-    for (const int i : gauge_cells_) triplets.emplace_back(i, i, diagonal[i]);
-    Eigen::SparseMatrix<double> system(n_, n_);
-    system.setFromTriplets(triplets.begin(), triplets.end());
-    if (!analysed_) sparse_.analyzePattern(system);
-    analysed_ = true;
-    sparse_.factorize(system);
-    if (sparse_.info() != Eigen::Success) return false;
-    p = sparse_.solve(d);
-    return p.allFinite();
-  }
-
-  template <typename Visit>
-  void for_each_entry(Visit visit) {
-    int offset = 0;
-    for (const film::FilmProjection* film : films_) {
-      const auto& j = film->pressure_matrix();
-      for (int column = 0; column < j.outerSize(); ++column) {
-        for (Eigen::SparseMatrix<double>::InnerIterator it(j, column); it; ++it) {
-          visit(offset + static_cast<int>(it.row()), offset + column, it.value());
-        }
-      }
-      offset += film->grid().n_cells();
+  /// Fluxes and volumes at result.pressure, and what the gap lacks: r = V' - g0 - C p.
+  Eigen::VectorXd evaluate(FilmSolveResult& result) const {
+    Eigen::Index offset = 0;
+    for (size_t f = 0; f < films_.size(); ++f) {
+      const int n = films_[f]->grid().n_cells();
+      result.flux[f] = films_[f]->compute_flux(result.pressure.segment(offset, n));
+      result.volume.segment(offset, n) = films_[f]->compute_volume(result.flux[f]);
+      offset += n;
     }
+    return result.volume - gap_ - walls_.times(result.pressure);
   }
 
-  /// First cell of every connected component without any compliance.
-  void find_rigid_components(const Eigen::VectorXd& compliance) {
-    int offset = 0;
-    for (const film::FilmProjection* film : films_) {
-      const film::FilmGrid& grid = film->grid();
-      std::vector<bool> seen(grid.n_cells(), false);
-      for (int first = 0; first < grid.n_cells(); ++first) {
-        if (seen[first]) continue;
-        bool rigid = true;
-        std::vector<int> stack = {first};
-        seen[first] = true;
-        while (!stack.empty()) {
-          const int cell = stack.back();
-          stack.pop_back();
-          rigid = rigid && compliance[offset + cell] == 0.0;
-          for (const film::Side side : {film::kLowXi, film::kHighXi, film::kLowEta, film::kHighEta}) {
-            const int next = grid.neighbour(cell, side);
-            if (next < 0 || seen[next]) continue;
-            seen[next] = true;
-            stack.push_back(next);
-          }
-        }
-        if (rigid) gauge_cells_.push_back(offset + first);
-      }
-      offset += grid.n_cells();
+  /// Held: at the limit, and the gap would rather be wider than the fat fills.
+  void hold_cells_at_the_limit(const Eigen::VectorXd& p, const Eigen::VectorXd& r) {
+    if (!has_limit()) return;
+    for (Eigen::Index i = 0; i < p.size(); ++i) held_[i] = p[i] <= lowest_[i] && r[i] <= 0.0;
+  }
+
+  double mismatch(const Eigen::VectorXd& r, const Eigen::VectorXd& volume) const {
+    double largest = 0.0;
+    for (Eigen::Index i = 0; i < r.size(); ++i) largest = std::max(largest, held_[i] ? 0.0 : std::abs(r[i]));
+    return largest / std::max(volume.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
+  }
+
+  bool keep_void(const Eigen::VectorXd& r, FilmSolveResult& result) const {
+    result.void_volume.setZero(r.size());
+    for (Eigen::Index i = 0; i < r.size(); ++i) {
+      if (held_[i]) result.void_volume[i] = std::max(0.0, -r[i]);
     }
+    return true;
+  }
+
+  /// Goes along dp until the convex function stops falling; its slope there is -r . dp. Returns the new r.
+  Eigen::VectorXd advance(const Eigen::VectorXd& dp, const Eigen::VectorXd& r, FilmSolveResult& result) const {
+    const Eigen::VectorXd start = result.pressure;
+    const auto go = [&](double share) {
+      result.pressure = start + share * dp;
+      if (has_limit()) result.pressure = result.pressure.cwiseMax(lowest_);
+      return evaluate(result);
+    };
+    Eigen::VectorXd next = go(1.0);
+    if (is_linear_) return next;
+    const double slope_at_start = r.dot(dp);
+    double low = 0.0, low_slope = -slope_at_start, high = 1.0;
+    for (int trial = 0; trial < kMaxLineSearch; ++trial) {
+      const double slope = -next.dot(dp);
+      if (slope <= kSlopeShare * slope_at_start) break;
+      const double secant = low + (high - low) * low_slope / (low_slope - slope);
+      const double share = std::clamp(secant, low + 0.05 * (high - low), low + 0.7 * (high - low));
+      high = share;
+      next = go(share);
+      if (-next.dot(dp) < 0.0) break;
+    }
+    return next;
   }
 
   const std::vector<film::FilmProjection*>& films_;
   const WallCompliance& walls_;
-  int n_;
-  std::vector<int> gauge_cells_;
-  Eigen::MatrixXd system_;
-  Eigen::LLT<Eigen::MatrixXd> dense_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> sparse_;
-  bool analysed_ = false;
+  const Eigen::VectorXd& gap_;
+  const Eigen::VectorXd& lowest_;
+  PressureSolver solver_;
+  std::vector<char> held_;
+  bool is_linear_ = true;
 };
 
-void linearise_all(const std::vector<film::FilmProjection*>& films, const Eigen::VectorXd& volume,
+void set_thickness(const std::vector<film::FilmProjection*>& films, const Eigen::VectorXd& volume,
                    const std::vector<Eigen::VectorXd>& flux) {
   int offset = 0;
   for (size_t f = 0; f < films.size(); ++f) {
-    films[f]->linearise(volume.segment(offset, films[f]->grid().n_cells()), flux[f]);
+    films[f]->set_thickness(volume.segment(offset, films[f]->grid().n_cells()), flux[f]);
     offset += films[f]->grid().n_cells();
-  }
-}
-
-Eigen::VectorXd gather_explicit_volume(const std::vector<film::FilmProjection*>& films, int n) {
-  Eigen::VectorXd volume(n);
-  int offset = 0;
-  for (const film::FilmProjection* film : films) {
-    volume.segment(offset, film->grid().n_cells()) = film->explicit_volume();
-    offset += film->grid().n_cells();
-  }
-  return volume;
-}
-
-void apply_pressure(const std::vector<film::FilmProjection*>& films, FilmSolveResult& result) {
-  int offset = 0;
-  for (size_t f = 0; f < films.size(); ++f) {
-    const int n = films[f]->grid().n_cells();
-    result.flux[f] = films[f]->compute_flux(result.pressure.segment(offset, n));
-    result.volume.segment(offset, n) = films[f]->compute_volume(result.flux[f]);
-    offset += n;
   }
 }
 
 }  // namespace
 
 FilmSolveResult solve_films(std::vector<film::FilmProjection*> films, const WallCompliance& walls,
-                            const Eigen::VectorXd& gap_without_pressure, const FilmSolveResult& start) {
-  const int n = static_cast<int>(gap_without_pressure.size());
-  PressureSolver solver(films, walls, n);
+                            const Eigen::VectorXd& gap_without_pressure, const Eigen::VectorXd& lowest,
+                            const FilmSolveResult& start) {
+  PressureProblem problem(films, walls, gap_without_pressure, lowest);
   FilmSolveResult result = start;
+  result.converged = false;
+  result.change = std::numeric_limits<double>::infinity();
   Eigen::VectorXd guess = start.volume;
   std::vector<Eigen::VectorXd> direction = start.flux;
   for (result.iterations = 1; result.iterations <= kMaxIterations; ++result.iterations) {
     if (result.iterations <= kFreeDirectionIterations) direction = result.flux;
-    linearise_all(films, guess, direction);
-    if (!solver.solve(gather_explicit_volume(films, n) - gap_without_pressure, result.pressure)) break;
-    apply_pressure(films, result);
+    set_thickness(films, guess, direction);
+    const double early = std::min(kEarlyTolerance * result.change, 1e-6);
+    if (!problem.solve(std::max(kPressureTolerance, early), result)) break;
     const double fullest = std::max(result.volume.cwiseAbs().maxCoeff(), std::numeric_limits<double>::min());
     result.change = (result.volume - guess).cwiseAbs().maxCoeff() / fullest;
     if (result.change <= kTolerance) {

@@ -6,13 +6,6 @@
 namespace lipofill::film {
 namespace {
 
-/// Coefficients of the quadratic form of one quadrant in (d1, d2), metric and conductances included.
-struct QuadrantForm {
-  double w11 = 0.0;
-  double w12 = 0.0;
-  double w22 = 0.0;
-};
-
 QuadrantForm conductance_form(const QuadrantMetric& g, const QuadrantEdges& edges, const Eigen::VectorXd& k) {
   QuadrantForm form;
   if (edges.xi >= 0 && edges.eta >= 0) {
@@ -28,10 +21,11 @@ QuadrantForm conductance_form(const QuadrantMetric& g, const QuadrantEdges& edge
   return form;
 }
 
-template <typename Visit>
-void for_each_quadrant(const FilmGrid& grid, const FilmMetric& metric, Visit visit) {
+/// `of_quadrant`: a value a quadrant, four a cell.
+template <typename Value, typename Visit>
+void for_each_quadrant(const FilmGrid& grid, const std::vector<std::array<Value, 4>>& of_quadrant, Visit visit) {
   for (int cell = 0; cell < grid.n_cells(); ++cell) {
-    for (int q = 0; q < 4; ++q) visit(metric.quadrants[cell][q], quadrant_edges(grid, cell, q));
+    for (int q = 0; q < 4; ++q) visit(of_quadrant[cell][q], quadrant_edges(grid, cell, q));
   }
 }
 
@@ -52,17 +46,31 @@ Eigen::VectorXd compute_outflow(const FilmGrid& grid, const Eigen::VectorXd& flu
   return outflow;
 }
 
-Eigen::VectorXd apply_conductance(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& conductance,
-                                  const Eigen::VectorXd& difference) {
+QuadrantForms compute_conductance_forms(const FilmGrid& grid, const FilmMetric& metric,
+                                        const Eigen::VectorXd& conductance) {
+  QuadrantForms forms(grid.n_cells());
+  for (int cell = 0; cell < grid.n_cells(); ++cell) {
+    for (int q = 0; q < 4; ++q) {
+      forms[cell][q] = conductance_form(metric.quadrants[cell][q], quadrant_edges(grid, cell, q), conductance);
+    }
+  }
+  return forms;
+}
+
+Eigen::VectorXd apply_forms(const FilmGrid& grid, const QuadrantForms& forms, const Eigen::VectorXd& difference) {
   Eigen::VectorXd flux = Eigen::VectorXd::Zero(grid.n_edges());
-  for_each_quadrant(grid, metric, [&](const QuadrantMetric& g, const QuadrantEdges& edges) {
-    const QuadrantForm form = conductance_form(g, edges, conductance);
+  for_each_quadrant(grid, forms, [&](const QuadrantForm& form, const QuadrantEdges& edges) {
     const double d1 = edges.xi < 0 ? 0.0 : difference[edges.xi];
     const double d2 = edges.eta < 0 ? 0.0 : difference[edges.eta];
     if (edges.xi >= 0) flux[edges.xi] += form.w11 * d1 + form.w12 * d2;
     if (edges.eta >= 0) flux[edges.eta] += form.w12 * d1 + form.w22 * d2;
   });
   return flux;
+}
+
+Eigen::VectorXd apply_conductance(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& conductance,
+                                  const Eigen::VectorXd& difference) {
+  return apply_forms(grid, compute_conductance_forms(grid, metric, conductance), difference);
 }
 
 PressureOperator::PressureOperator(const FilmGrid& grid) : matrix_(grid.n_cells(), grid.n_cells()) {
@@ -80,23 +88,31 @@ PressureOperator::PressureOperator(const FilmGrid& grid) : matrix_(grid.n_cells(
       }
     }
   }
+  for (const LeakyWall& wall : grid.leaky_walls) {
+    pattern.emplace_back(wall.left, wall.right, 0.0);
+    pattern.emplace_back(wall.right, wall.left, 0.0);
+  }
   matrix_.setFromTriplets(pattern.begin(), pattern.end());
   matrix_.makeCompressed();
 }
 
 const Eigen::SparseMatrix<double>& PressureOperator::assemble(const FilmGrid& grid, const FilmMetric& metric,
                                                               const Eigen::VectorXd& conductance) {
+  return assemble(grid, compute_conductance_forms(grid, metric, conductance),
+                  Eigen::VectorXd::Zero(static_cast<Eigen::Index>(grid.leaky_walls.size())));
+}
+
+const Eigen::SparseMatrix<double>& PressureOperator::assemble(const FilmGrid& grid, const QuadrantForms& forms,
+                                                              const Eigen::VectorXd& leaks) {
   matrix_.coeffs().setZero();
-  const auto add = [&](int edge_a, int edge_b, double w) {
-    const Edge& a = grid.edges[edge_a];
-    const Edge& b = grid.edges[edge_b];
+  const auto add_between = [&](const auto& a, const auto& b, double w) {
     matrix_.coeffRef(a.left, b.left) += w;
     matrix_.coeffRef(a.right, b.right) += w;
     matrix_.coeffRef(a.left, b.right) -= w;
     matrix_.coeffRef(a.right, b.left) -= w;
   };
-  for_each_quadrant(grid, metric, [&](const QuadrantMetric& g, const QuadrantEdges& edges) {
-    const QuadrantForm form = conductance_form(g, edges, conductance);
+  const auto add = [&](int a, int b, double w) { add_between(grid.edges[a], grid.edges[b], w); };
+  for_each_quadrant(grid, forms, [&](const QuadrantForm& form, const QuadrantEdges& edges) {
     if (edges.xi >= 0) add(edges.xi, edges.xi, form.w11);
     if (edges.eta >= 0) add(edges.eta, edges.eta, form.w22);
     if (edges.xi >= 0 && edges.eta >= 0) {
@@ -104,6 +120,9 @@ const Eigen::SparseMatrix<double>& PressureOperator::assemble(const FilmGrid& gr
       add(edges.eta, edges.xi, form.w12);
     }
   });
+  for (size_t k = 0; k < grid.leaky_walls.size(); ++k) {
+    add_between(grid.leaky_walls[k], grid.leaky_walls[k], leaks[static_cast<Eigen::Index>(k)]);
+  }
   return matrix_;
 }
 
@@ -111,7 +130,7 @@ Eigen::SparseMatrix<double> assemble_velocity_mass(const FilmGrid& grid, const F
                                                    const Eigen::VectorXd& weight) {
   std::vector<Eigen::Triplet<double>> triplets;
   triplets.reserve(16 * static_cast<size_t>(grid.n_cells()));
-  for_each_quadrant(grid, metric, [&](const QuadrantMetric& g, const QuadrantEdges& edges) {
+  for_each_quadrant(grid, metric.quadrants, [&](const QuadrantMetric& g, const QuadrantEdges& edges) {
     const double scale = 0.25 / g.sqrt_g;
     if (edges.xi >= 0) triplets.emplace_back(edges.xi, edges.xi, scale * weight[edges.xi] * g.g11);
     if (edges.eta >= 0) triplets.emplace_back(edges.eta, edges.eta, scale * weight[edges.eta] * g.g22);

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <array>
+#include <vector>
 
 #include "core/film/film_grid.h"
 #include "core/film/film_metric.h"
@@ -14,6 +16,22 @@ Eigen::VectorXd compute_edge_difference(const FilmGrid& grid, const Eigen::Vecto
 /// Net outflow of every cell, the paper's eq. 1: D = -G^T.
 Eigen::VectorXd compute_outflow(const FilmGrid& grid, const Eigen::VectorXd& flux);
 
+/// Coefficients of the quadratic form d^T w d of one quadrant in the differences across its xi-edge and eta-edge; zero
+/// where the edge is sealed.
+struct QuadrantForm {
+  double w11 = 0.0;
+  double w12 = 0.0;
+  double w22 = 0.0;
+};
+using QuadrantForms = std::vector<std::array<QuadrantForm, 4>>;  ///< a cell
+
+/// The forms whose sum is W(conductance), see apply_conductance.
+QuadrantForms compute_conductance_forms(const FilmGrid& grid, const FilmMetric& metric,
+                                        const Eigen::VectorXd& conductance);
+
+/// Flux W d of forms  (n_edges).
+Eigen::VectorXd apply_forms(const FilmGrid& grid, const QuadrantForms& forms, const Eigen::VectorXd& difference);
+
 /// Flux that differences across edges drive, W d, with the contravariant metric and a conductance an edge:
 ///
 ///     d^T W d = sum over quadrants of 1/4 sqrt(g) [k1 g^11 d1^2 + 2 sqrt(k1 k2) g^12 d1 d2 + k2 g^22 d2^2]
@@ -25,8 +43,8 @@ Eigen::VectorXd apply_conductance(const FilmGrid& grid, const FilmMetric& metric
                                   const Eigen::VectorXd& difference);
 
 /// The paper's J (eq. 3) with friction in it: J = G^T W G  [m3/(Pa s)]. Symmetric, positive semi-definite, constants of
-/// each connected component in its null space, nine points a row. Second order on smooth charts. Checked by
-/// tests/unit/film/edge_operators_test.cc.
+/// each connected component in its null space, nine points a row. Second order on smooth charts, orthogonal or not.
+/// Checked by tests/unit/film/edge_operators_test.cc and tests/verification/film/manufactured_*_test.cc.
 class PressureOperator {
  public:
   explicit PressureOperator(const FilmGrid& grid);
@@ -34,6 +52,9 @@ class PressureOperator {
   /// Both triangles, in a pattern that never changes.
   const Eigen::SparseMatrix<double>& assemble(const FilmGrid& grid, const FilmMetric& metric,
                                               const Eigen::VectorXd& conductance);
+  /// @param leaks  conductance of every leaky wall of the grid, in the same unit as the forms
+  const Eigen::SparseMatrix<double>& assemble(const FilmGrid& grid, const QuadrantForms& forms,
+                                              const Eigen::VectorXd& leaks);
 
  private:
   Eigen::SparseMatrix<double> matrix_;

@@ -8,7 +8,8 @@ int FilmGrid::neighbour(int cell, Side side) const {
   return side == kHighXi || side == kHighEta ? edges[edge].right : edges[edge].left;
 }
 
-FilmGrid make_film_grid(const geometry::ChartBox& extent, int n_xi, int n_eta, const std::vector<int>& zone_of_slot) {
+FilmGrid make_film_grid(const geometry::ChartBox& extent, int n_xi, int n_eta, const std::vector<int>& zone_of_slot,
+                        const WalledSlots& walls) {
   FilmGrid grid;
   grid.extent = extent;
   grid.n_xi = n_xi;
@@ -26,6 +27,7 @@ FilmGrid make_film_grid(const geometry::ChartBox& extent, int n_xi, int n_eta, c
   const auto open = [&](int left, int right_slot, int direction) {
     const int right = grid.cell_of_slot[right_slot];
     if (right < 0 || grid.zone_of_cell[left] != grid.zone_of_cell[right]) return;
+    if (walls.contains({grid.slot_of_cell[left], right_slot})) return;
     grid.edge_of_side[left][direction == 0 ? kHighXi : kHighEta] = grid.n_edges();
     grid.edge_of_side[right][direction == 0 ? kLowXi : kLowEta] = grid.n_edges();
     grid.edges.push_back({left, right, direction});

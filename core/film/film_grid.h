@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/chart_box.h"
@@ -18,6 +20,13 @@ struct Edge {
   int direction = 0;  ///< 0: the edge is crossed along xi, 1: along eta
 };
 
+/// A wall between two adjacent cells that fat seeps through, F = conductance (p_left - p_right).
+struct LeakyWall {
+  int left = 0;
+  int right = 0;
+  double conductance = 0.0;  ///< [m3/(Pa s)]
+};
+
 /// Topology of the staggered film grid: n_xi x n_eta slots over a box of the chart, of which those in a zone are cells.
 /// Pressure and volume live on cells, velocity on the open edges. Edges between two zones, or between a cell and no
 /// cell, are sealed walls and are not in the list.
@@ -30,6 +39,7 @@ struct FilmGrid {
   std::vector<int> zone_of_cell;
   std::vector<Edge> edges;                       ///< ascending in slot of the left cell, xi before eta
   std::vector<std::array<int, 4>> edge_of_side;  ///< a cell's edges by Side; -1: sealed
+  std::vector<LeakyWall> leaky_walls;            ///< sealed edges that are not quite tight
 
   int n_cells() const { return static_cast<int>(slot_of_cell.size()); }
   int n_edges() const { return static_cast<int>(edges.size()); }
@@ -43,8 +53,12 @@ struct FilmGrid {
   double vertex_eta(int j) const { return extent.eta_min + (extent.eta_max - extent.eta_min) * j / n_eta; }
 };
 
-/// Numbers cells and edges. `zone_of_slot`: (n_xi * n_eta), -1 where there is no film.
+/// Slots on the two sides of a wall inside a zone, the lower one first.
+using WalledSlots = std::set<std::pair<int, int>>;
+
+/// Numbers cells and edges. `zone_of_slot`: (n_xi * n_eta), -1 where there is no film. Edges in `walls` are sealed.
 /// Checked by tests/unit/film/edge_operators_test.cc.
-FilmGrid make_film_grid(const geometry::ChartBox& extent, int n_xi, int n_eta, const std::vector<int>& zone_of_slot);
+FilmGrid make_film_grid(const geometry::ChartBox& extent, int n_xi, int n_eta, const std::vector<int>& zone_of_slot,
+                        const WalledSlots& walls = {});
 
 }  // namespace lipofill::film

@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <vector>
 
 #include "core/film/edge_operators.h"
 #include "core/film/film_grid.h"
 #include "core/film/film_metric.h"
+#include "core/film/flow_law.h"
 #include "core/film/rheology.h"
 
 namespace lipofill::film {
@@ -14,52 +16,59 @@ namespace lipofill::film {
 struct FilmStepInput {
   const FilmMetric* metric = nullptr;
   Fat fat;
-  Eigen::VectorXd volume;      ///< V at the start of the step [m3] (n_cells)
-  Eigen::VectorXd injected;    ///< volume that sources bring in this step [m3] (n_cells)
-  Eigen::VectorXd velocity;    ///< U after viscosity and advection [m2/s] (n_edges)
-  Eigen::VectorXd body_force;  ///< rho b . (X_right - X_left) [Pa] (n_edges); it drives flow as a pressure fall does
-  double dt = 0.0;             ///< [s]
+  Eigen::VectorXd volume;            ///< V at the start of the step [m3] (n_cells)
+  Eigen::VectorXd injected;          ///< volume that sources bring in this step [m3] (n_cells)
+  Eigen::VectorXd velocity;          ///< U after viscosity and advection [m2/s] (n_edges); 0 for fat without inertia
+  Eigen::VectorXd body_force;        ///< rho b . (X_right - X_left) [Pa] (n_edges); it drives as a pressure fall does
+  double dt = 0.0;                   ///< [s]
+  Eigen::VectorXd wall_stress;       ///< T = h s / 2 of the last step [Pa m] (n_edges); empty: fat is not elastic
+  std::vector<char> is_closed;       ///< cells that fat has not entered yet (n_cells); empty: none
+  double leak_full_thickness = 0.0;  ///< a leaky wall's flux falls to zero below this upstream thickness [m]
 };
 
 /// The film's projection for a mobility given by a guess of the new thickness:
 ///
-///     F  = h_e U - W (G p - rho b . dX)                    flux [m3/s]
-///     V' = V + injected + dt G^T F
+///     F  = h_e U + law(rho b . dX - G p)               flux [m3/s], law of flow_law.h; through leaky walls k (p_l -
+///     p_r) V' = V + injected + dt G^T F
 ///
-/// so that V' = explicit_volume - dt J p, in flux form: what leaves a cell enters its neighbour, to the last bit but
-/// rounding. Checked by tests/unit/coupling/film_solve_test.cc.
+/// in flux form: what leaves a cell enters its neighbour, to the last bit but rounding. Checked by
+/// tests/unit/coupling/film_solve_test.cc.
 class FilmProjection {
  public:
   explicit FilmProjection(const FilmGrid& grid);
 
   void begin_step(FilmStepInput input);
 
-  /// Takes edge thicknesses and conductances from a guess of the new volume, upwind by a guess of the flux.
-  void linearise(const Eigen::VectorXd& volume_guess, const Eigen::VectorXd& flux_guess);
+  /// Takes edge thicknesses and with them mobilities from a guess of the new volume, upwind by a guess of the flux.
+  void set_thickness(const Eigen::VectorXd& volume_guess, const Eigen::VectorXd& flux_guess);
 
-  /// dt J of the last linearise  [m3/Pa].
-  const Eigen::SparseMatrix<double>& pressure_matrix() const { return *pressure_matrix_; }
-  /// V' at zero pressure [m3].
-  const Eigen::VectorXd& explicit_volume() const { return explicit_volume_; }
-  /// F at a pressure [m3/s].
+  /// Whether V' is linear in p.
+  bool is_linear() const { return law_.is_linear(); }
+  /// -dV'/dp = dt J at a pressure [m3/Pa]; both triangles, in a pattern that never changes.
+  const Eigen::SparseMatrix<double>& linearise(const Eigen::VectorXd& pressure);
+  /// F at a pressure, through the open edges and then the leaky walls [m3/s] (n_edges + n_leaky_walls).
   Eigen::VectorXd compute_flux(const Eigen::VectorXd& pressure) const;
   /// V' of a flux [m3].
   Eigen::VectorXd compute_volume(const Eigen::VectorXd& flux) const;
-  /// U' of a flux [m2/s]; 0 on dry edges.
+  /// U' of a flux [m2/s] (n_edges); 0 on dry edges.
   Eigen::VectorXd compute_velocity(const Eigen::VectorXd& flux) const;
+  /// T' = h D / 2 at a pressure [Pa m] (n_edges); empty when the fat is not elastic.
+  Eigen::VectorXd compute_wall_stress(const Eigen::VectorXd& pressure) const;
 
   const FilmGrid& grid() const { return *grid_; }
   const FilmStepInput& input() const { return input_; }
 
  private:
+  Eigen::VectorXd compute_drive(const Eigen::VectorXd& pressure) const;
+
   const FilmGrid* grid_;
   PressureOperator pressure_operator_;
+  FlowLaw law_;
   FilmStepInput input_;
   Eigen::VectorXd edge_thickness_;
-  Eigen::VectorXd conductance_;
-  Eigen::VectorXd explicit_flux_;
-  Eigen::VectorXd explicit_volume_;
-  const Eigen::SparseMatrix<double>* pressure_matrix_ = nullptr;
+  Eigen::VectorXd leak_conductance_;
+  bool matrix_is_current_ = false;
+  const Eigen::SparseMatrix<double>* matrix_ = nullptr;
 };
 
 }  // namespace lipofill::film

@@ -6,9 +6,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/film/advection.h"
-#include "core/film/edge_operators.h"
-#include "core/film/edge_thickness.h"
 #include "core/solid/hex_quality.h"
 
 namespace lipofill::simulation {
@@ -17,24 +14,26 @@ namespace {
 constexpr int kMaxNewtonIterations = 12;
 /// Sum over cells of |gap - film| over the film's volume; well inside the 1e-4 that is promised.
 constexpr double kGapTolerance = 2e-5;
-/// C has negative entries on curved layers; a lumped cell keeps at least this share of its own compliance, so that J +
-/// R stays definite.
-constexpr double kLeastLumpedShare = 1e-3;
-
-film::Fat fat_in(const FilmLayout& film, double viscosity, double density) {
-  return {viscosity, density, film.wall_friction};
-}
 
 }  // namespace
 
-film::FilmMetric CoupledStep::film_metric(const SimulationState& state, int film) const {
-  if (gap_of_film_[film] < 0) return rest_metric_[film];
-  return film::compute_film_metric(films_[film].grid, gaps_->film(gap_of_film_[film]).mid_surface(state.positions));
+int CoupledStep::n_ligament_springs() const {
+  if (!tissue_ || tissue_->ligaments.empty()) return 0;
+  return tissue_->ligaments.back().first_spring + tissue_->ligaments.back().n_springs;
 }
 
-bool CoupledStep::linearise_tissue(const Eigen::Matrix3Xd& x, double dt) {
+void CoupledStep::assemble(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& spring_is_intact, double dt) {
+  if (dt == assembled_dt_ && spring_is_intact == assembled_springs_ && x == assembled_positions_) return;
+  for (int k = 0; k < spring_is_intact.size(); ++k) tissue_->tissue.set_spring_intact(k, spring_is_intact[k] > 0.0);
   tissue_->tissue.assemble(x, dt);
-  gaps_->evaluate(x);
+  assembled_positions_ = x;
+  assembled_springs_ = spring_is_intact;
+  assembled_dt_ = dt;
+}
+
+bool CoupledStep::linearise_tissue(const SimulationState& state, double dt) {
+  assemble(state.positions, state.spring_is_intact, dt);
+  gaps_->evaluate(state.positions);
   return factor_->factorise(tissue_->tissue.system_matrix(), gaps_->derivative()).ok();
 }
 
@@ -60,53 +59,6 @@ Eigen::VectorXd CoupledStep::compute_residual_force(const SimulationState& from,
   return force;
 }
 
-void CoupledStep::begin_film_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected,
-                                  double dt) {
-  metric_.resize(films_.size());
-  for (size_t f = 0; f < films_.size(); ++f) {
-    const FilmState& film = state.films[f];
-    const film::FilmGrid& grid = films_[f].grid;
-    const film::Fat fat = fat_in(films_[f], fat_viscosity_, fat_density_);
-    metric_[f] = film_metric(state, static_cast<int>(f));
-    const Eigen::VectorXd h = film.volume.cwiseMax(0.0).cwiseQuotient(metric_[f].area);
-    const Eigen::VectorXd edge_h = film::compute_edge_thickness(grid, h, film.velocity);
-    const Eigen::VectorXd viscous = viscosity_[f].advance(grid, metric_[f], fat, h, edge_h, film.velocity, dt);
-    const Eigen::VectorXd height = (gravity_.transpose() * metric_[f].centre).transpose();
-    projections_[f]->begin_step({&metric_[f], fat, film.volume, injected[f],
-                                 film::advect_velocity(grid, metric_[f], viscous, dt),
-                                 fat_density_ * film::compute_edge_difference(grid, height), dt});
-  }
-}
-
-/// The compliance of every cell's walls, in the order of all cells.
-coupling::WallCompliance CoupledStep::wall_compliance() {
-  coupling::WallCompliance walls;
-  walls.diagonal.setZero(cell_offset_.back());
-  for (size_t f = 0; f < films_.size(); ++f) {
-    if (films_[f].wall != FilmWallKind::kWinkler) continue;
-    walls.diagonal.segment(cell_offset_[f], films_[f].grid.n_cells()) = rest_area_[f] / films_[f].wall_stiffness;
-  }
-  if (cell_of_tissue_.empty()) return walls;
-  const Eigen::MatrixXd& c = factor_->compliance();
-  if (coupling_ == CouplingMode::kLumped) {
-    for (size_t k = 0; k < cell_of_tissue_.size(); ++k) {
-      walls.diagonal[cell_of_tissue_[k]] = std::max(c.row(k).sum(), kLeastLumpedShare * c(k, k));
-    }
-    return walls;
-  }
-  if (static_cast<int>(cell_of_tissue_.size()) == cell_offset_.back()) {
-    walls.full = &c;
-    return walls;
-  }
-  full_compliance_ = walls.diagonal.asDiagonal();
-  for (size_t b = 0; b < cell_of_tissue_.size(); ++b) {
-    for (size_t a = 0; a < cell_of_tissue_.size(); ++a)
-      full_compliance_(cell_of_tissue_[a], cell_of_tissue_[b]) = c(a, b);
-  }
-  walls.full = &full_compliance_;
-  return walls;
-}
-
 Eigen::VectorXd CoupledStep::gather_tissue_part(const Eigen::VectorXd& all_cells) const {
   Eigen::VectorXd part(cell_of_tissue_.size());
   for (size_t k = 0; k < cell_of_tissue_.size(); ++k) part[k] = all_cells[cell_of_tissue_[k]];
@@ -120,39 +72,38 @@ void CoupledStep::add_displacement(const Eigen::VectorXd& dx, Eigen::Matrix3Xd& 
   }
 }
 
-/// Rest + C p of the cells that have walls of their own, rest of the others.
-Eigen::VectorXd CoupledStep::gap_of_walls(const Eigen::VectorXd& pressure) const {
-  Eigen::VectorXd gap = rest_volume_;
-  for (size_t f = 0; f < films_.size(); ++f) {
-    if (films_[f].wall != FilmWallKind::kWinkler) continue;
-    const int n = films_[f].grid.n_cells();
-    gap.segment(cell_offset_[f], n) +=
-        pressure.segment(cell_offset_[f], n).cwiseProduct(rest_area_[f]) / films_[f].wall_stiffness;
-  }
-  return gap;
-}
-
 double CoupledStep::gap_error(const Eigen::VectorXd& gap, const Eigen::VectorXd& volume) const {
   const double total = std::max(volume.sum(), std::numeric_limits<double>::min());
   if (coupling_ == CouplingMode::kLumped) return std::abs((gap - volume).sum()) / total;
   return (gap - volume).cwiseAbs().sum() / total;
 }
 
+Eigen::VectorXd CoupledStep::gather(const SimulationState& state, Eigen::VectorXd FilmState::*values) const {
+  Eigen::VectorXd all(cell_offset_.back());
+  for (size_t f = 0; f < films_.size(); ++f) {
+    all.segment(cell_offset_[f], films_[f].grid.n_cells()) = state.films[f].*values;
+  }
+  return all;
+}
+
 StepOutcome CoupledStep::try_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected,
                                   double dt) {
   StepOutcome outcome;
-  begin_film_step(state, injected, dt);
-  coupling::FilmSolveResult solution;
-  solution.pressure.resize(cell_offset_.back());
-  solution.volume.resize(cell_offset_.back());
-  for (size_t f = 0; f < films_.size(); ++f) {
-    solution.pressure.segment(cell_offset_[f], films_[f].grid.n_cells()) = state.films[f].pressure;
-    solution.volume.segment(cell_offset_[f], films_[f].grid.n_cells()) = state.films[f].volume;
-    solution.flux.push_back(state.films[f].velocity);
-  }
   outcome.state = state;
+  enter_injected_cells(injected, outcome.state);
+  begin_film_step(outcome.state, injected, dt);
+  coupling::FilmSolveResult solution;
+  solution.pressure = gather(state, &FilmState::pressure);
+  solution.volume = gather(state, &FilmState::volume);
+  for (const FilmState& film : state.films) solution.flux.push_back(film.velocity);
   if (!solve_tissue_and_films(state, dt, outcome, solution)) return outcome;
-  finish(state, dt, solution, outcome);
+  outcome.void_volume = solution.void_volume;
+  if (!finish_tissue(state, dt, outcome)) return outcome;
+  finish_films(state, dt, solution, outcome.state);
+  outcome.state.time = state.time + dt;
+  outcome.state.step = state.step + 1;
+  outcome.state.last_step = dt;
+  outcome.accepted = true;
   return outcome;
 }
 
@@ -161,11 +112,12 @@ bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt,
   std::vector<film::FilmProjection*> projections;
   for (const auto& projection : projections_) projections.push_back(projection.get());
   Eigen::Matrix3Xd& x = outcome.state.positions;
+  const Eigen::VectorXd lowest = lowest_pressure(outcome.state);
   for (outcome.newton_iterations = 1; outcome.newton_iterations <= kMaxNewtonIterations; ++outcome.newton_iterations) {
     Eigen::VectorXd gap_without_pressure = rest_volume_;
     Eigen::VectorXd force, response;
     if (tissue_) {
-      if (!linearise_tissue(x, dt)) {
+      if (!linearise_tissue(outcome.state, dt)) {
         outcome.reason = "the tissue's stiffness is not positive definite";
         return false;
       }
@@ -175,7 +127,7 @@ bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt,
         gap_without_pressure[cell_of_tissue_[k]] += gaps_->volume()[k] + response[k];
       }
     }
-    solution = coupling::solve_films(projections, wall_compliance(), gap_without_pressure, solution);
+    solution = coupling::solve_films(projections, wall_compliance(), gap_without_pressure, lowest, solution);
     outcome.film_iterations += solution.iterations;
     if (!solution.converged) {
       outcome.reason =
@@ -193,50 +145,71 @@ bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt,
     }
     outcome.gap = gap_of_walls(solution.pressure);
     for (size_t k = 0; k < cell_of_tissue_.size(); ++k) outcome.gap[cell_of_tissue_[k]] += gaps_->volume()[k];
-    if (gap_error(outcome.gap, solution.volume) <= kGapTolerance) return true;
+    if (gap_error(outcome.gap, solution.volume + solution.void_volume) <= kGapTolerance) return true;
   }
-  outcome.reason =
-      absl::StrCat("the gap differs from the film's volume by a share of ", gap_error(outcome.gap, solution.volume),
-                   " after ", kMaxNewtonIterations, " iterations");
+  outcome.reason = absl::StrCat("the gap differs from the film's volume by a share of ",
+                                gap_error(outcome.gap, solution.volume + solution.void_volume), " after ",
+                                kMaxNewtonIterations, " iterations");
   return false;
 }
 
-void CoupledStep::finish(const SimulationState& from, double dt, const coupling::FilmSolveResult& solution,
-                         StepOutcome& outcome) {
+/// False: the tissue is not one that could be shown. Ligaments that carry more than they can are broken from now on.
+bool CoupledStep::finish_tissue(const SimulationState& from, double dt, StepOutcome& outcome) {
+  if (!tissue_) return true;
   SimulationState& next = outcome.state;
-  if (tissue_) {
-    next.velocities = (next.positions - from.positions) / dt;
-    outcome.min_scaled_jacobian = compute_min_scaled_jacobian(next);
-    if (!(outcome.min_scaled_jacobian > 0.0)) {
-      outcome.reason = "a hexahedron of the tissue is turned inside out";
-      return;
+  next.velocities = (next.positions - from.positions) / dt;
+  outcome.min_scaled_jacobian = solid::compute_min_scaled_jacobian(tissue_->tissue.mesh(), next.positions);
+  if (!(outcome.min_scaled_jacobian > 0.0)) {
+    outcome.reason = "a hexahedron of the tissue is turned inside out";
+    return false;
+  }
+  describe_tissue(outcome, dt);
+  for (const LigamentLayout& ligament : tissue_->ligaments) {
+    for (int k = ligament.first_spring; k < ligament.first_spring + ligament.n_springs; ++k) {
+      if (outcome.spring_tension[k] > ligament.breaking_force) next.spring_is_intact[k] = 0.0;
     }
   }
-  for (size_t f = 0; f < films_.size(); ++f) {
-    const int n = films_[f].grid.n_cells();
-    next.films[f].pressure = solution.pressure.segment(cell_offset_[f], n);
-    next.films[f].volume = solution.volume.segment(cell_offset_[f], n);
-    next.films[f].velocity = projections_[f]->compute_velocity(solution.flux[f]);
-  }
-  next.time = from.time + dt;
-  next.step = from.step + 1;
-  outcome.accepted = true;
+  return true;
 }
 
-double CoupledStep::compute_min_scaled_jacobian(const SimulationState& state) const {
-  return tissue_ ? solid::compute_min_scaled_jacobian(tissue_->tissue.mesh(), state.positions) : 1.0;
+/// Energies and springs. Assembles where the next step begins.
+void CoupledStep::describe_tissue(StepOutcome& outcome, double dt) {
+  const SimulationState& state = outcome.state;
+  const solid::Tissue& tissue = tissue_->tissue;
+  assemble(state.positions, state.spring_is_intact, dt);
+  outcome.elastic_energy = tissue.elastic_energy();
+  outcome.kinetic_energy = 0.5 * state.velocities.colwise().squaredNorm() * tissue.mass();
+  outcome.spring_tension.resize(n_ligament_springs());
+  outcome.spring_length.resize(n_ligament_springs());
+  for (int k = 0; k < n_ligament_springs(); ++k) {
+    outcome.spring_tension[k] = tissue.spring_tension(k);
+    outcome.spring_length[k] = tissue.spring_length(k);
+  }
 }
 
 Eigen::VectorXd CoupledStep::compute_gap(const SimulationState& state) {
-  Eigen::VectorXd pressure(cell_offset_.back());
-  for (size_t f = 0; f < films_.size(); ++f) {
-    pressure.segment(cell_offset_[f], films_[f].grid.n_cells()) = state.films[f].pressure;
-  }
-  Eigen::VectorXd gap = gap_of_walls(pressure);
+  Eigen::VectorXd gap = gap_of_walls(gather(state, &FilmState::pressure));
   if (!tissue_) return gap;
   gaps_->evaluate(state.positions);
   for (size_t k = 0; k < cell_of_tissue_.size(); ++k) gap[cell_of_tissue_[k]] += gaps_->volume()[k];
   return gap;
+}
+
+StepOutcome CoupledStep::describe(const SimulationState& state) {
+  StepOutcome outcome;
+  outcome.state = state;
+  outcome.gap = compute_gap(state);
+  const Eigen::VectorXd pressure = gather(state, &FilmState::pressure);
+  const Eigen::VectorXd lowest = lowest_pressure(state);
+  outcome.void_volume = Eigen::VectorXd::Zero(outcome.gap.size());
+  if (lowest.size() > 0) {
+    const Eigen::VectorXd excess = (outcome.gap - gather(state, &FilmState::volume)).cwiseMax(0.0);
+    outcome.void_volume = (pressure.array() <= lowest.array()).select(excess, 0.0);
+  }
+  if (!tissue_) return outcome;
+  outcome.min_scaled_jacobian = solid::compute_min_scaled_jacobian(tissue_->tissue.mesh(), state.positions);
+  describe_tissue(outcome, state.last_step > 0.0 ? state.last_step : 1.0);
+  return outcome;
 }
 
 }  // namespace lipofill::simulation

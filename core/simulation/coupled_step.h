@@ -25,7 +25,13 @@ struct StepOutcome {
   std::string reason;  ///< why not
   SimulationState state;
   Eigen::VectorXd gap;               ///< rest + g at the new positions [m3] (cells of all films)
+  Eigen::VectorXd void_volume;       ///< of the gap, at the suction limit [m3] (cells of all films)
+  double elastic_energy = 0.0;       ///< [J]
+  double kinetic_energy = 0.0;       ///< of the tissue [J]
+  Eigen::VectorXd spring_tension;    ///< of every spring of a ligament [N]
+  Eigen::VectorXd spring_length;     ///< [m]
   double min_scaled_jacobian = 1.0;  ///< of the tissue at the new positions
+  double error = 0.0;                ///< estimate of the step's own, set by the simulation [m]
   int film_iterations = 0;
   int newton_iterations = 0;
 };
@@ -35,8 +41,9 @@ struct StepOutcome {
 ///     S dx - B^T p = f                 tissue: S = M/dt^2 + D/dt + K at the positions x
 ///     B dx + dt J p = d                films:  d = V + injected - outflow at zero pressure - rest - g(x)
 ///
-/// repeated from the new positions (Newton) until the gap holds the film's volume to kGapTolerance: B changes with x,
-/// so that large steps need more than one. What mismatch is left enters the next step's d: it cannot accumulate.
+/// with J the tangent of the fat's flow law and p not below the suction limit (film_solve.h), repeated from the new
+/// positions (Newton) until the gap holds the film's volume to kGapTolerance: B changes with x, so that large steps
+/// need more than one. What mismatch is left enters the next step's d: it cannot accumulate.
 class CoupledStep {
  public:
   static absl::StatusOr<std::unique_ptr<CoupledStep>> create(const FaceModel& model,
@@ -53,17 +60,14 @@ class CoupledStep {
   /// @param injected  volume into each cell of each film [m3]
   StepOutcome try_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt);
 
-  /// Rest + g for a state [m3] (cells of all films).
-  Eigen::VectorXd compute_gap(const SimulationState& state);
-
-  double compute_min_scaled_jacobian(const SimulationState& state) const;
-
   int n_dofs() const { return tissue_ ? tissue_->tissue.n_dofs() : 0; }
   const TissueSetup* tissue() const { return tissue_.get(); }
   /// Mid-surface metric of a film for a state.
   film::FilmMetric film_metric(const SimulationState& state, int film) const;
   /// Cell areas at rest, of a film [m2].
   const Eigen::VectorXd& rest_area(int film) const { return rest_area_[film]; }
+  /// Figures of a state that does not come from try_step: gap, void, energies, springs.
+  StepOutcome describe(const SimulationState& state);
   double shift() const { return factor_ ? factor_->shift() : 0.0; }
   void set_shift(double shift) {
     if (factor_) factor_->set_shift(shift);
@@ -75,25 +79,36 @@ class CoupledStep {
   absl::Status check_every_cell_can_open();
   bool open_to(const Eigen::VectorXd& target, double tolerance, SimulationState& state, Eigen::VectorXd& pressure);
 
+  /// Brings the tissue to positions and intact springs; does nothing where it is there already.
+  void assemble(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& spring_is_intact, double dt);
   /// The tissue's side of a Newton iteration: assembles at x and factors. False: not positive definite.
-  bool linearise_tissue(const Eigen::Matrix3Xd& x, double dt);
+  bool linearise_tissue(const SimulationState& state, double dt);
   Eigen::VectorXd compute_residual_force(const SimulationState& from, const Eigen::Matrix3Xd& x, double dt) const;
   void begin_film_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt);
+  Eigen::VectorXd move_freely(size_t film_index, const FilmState& film, const film::Fat& fat, double dt);
   coupling::WallCompliance wall_compliance();
   Eigen::VectorXd gather_tissue_part(const Eigen::VectorXd& all_cells) const;
   void add_displacement(const Eigen::VectorXd& dx, Eigen::Matrix3Xd& x) const;
   Eigen::VectorXd gap_of_walls(const Eigen::VectorXd& pressure) const;
+  Eigen::VectorXd lowest_pressure(const SimulationState& state) const;
   double gap_error(const Eigen::VectorXd& gap, const Eigen::VectorXd& volume) const;
+  void enter_injected_cells(const std::vector<Eigen::VectorXd>& injected, SimulationState& state) const;
+  void finish_films(const SimulationState& from, double dt, const coupling::FilmSolveResult& solution,
+                    SimulationState& next) const;
+  bool finish_tissue(const SimulationState& from, double dt, StepOutcome& outcome);
+  int n_ligament_springs() const;
+  Eigen::VectorXd compute_gap(const SimulationState& state);
+  Eigen::VectorXd gather(const SimulationState& state, Eigen::VectorXd FilmState::*values) const;
+  void describe_tissue(StepOutcome& outcome, double dt);
   bool solve_tissue_and_films(const SimulationState& from, double dt, StepOutcome& outcome,
                               coupling::FilmSolveResult& solution);
-  void finish(const SimulationState& from, double dt, const coupling::FilmSolveResult& solution, StepOutcome& outcome);
 
   const FaceModel& model_;
   const std::vector<FilmLayout>& films_;
   CouplingMode coupling_;
   Eigen::Vector3d gravity_;
-  double fat_density_;
-  double fat_viscosity_;
+  film::Fat fat_;
+  double suction_limit_;  ///< [Pa], infinity: none
   std::unique_ptr<TissueSetup> tissue_;
   std::unique_ptr<coupling::GapSystem> gaps_;
   std::unique_ptr<coupling::CoupledFactor> factor_;
@@ -106,7 +121,10 @@ class CoupledStep {
   std::vector<std::unique_ptr<film::FilmProjection>> projections_;
   std::vector<film::ImplicitViscosity> viscosity_;
   std::vector<film::FilmMetric> metric_;  ///< of the step under way
-  Eigen::MatrixXd full_compliance_;       ///< of all cells, when films with other walls stand beside those on tissue
+  Eigen::Matrix3Xd assembled_positions_;  ///< where the tissue was last assembled
+  Eigen::VectorXd assembled_springs_;
+  double assembled_dt_ = 0.0;
+  Eigen::MatrixXd full_compliance_;  ///< of all cells, when films with other walls stand beside those on tissue
 };
 
 }  // namespace lipofill::simulation

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -14,6 +15,16 @@ constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 /// A session that needs more would crowd out the others.
 constexpr double kMaxFactorBytes = 4.0 * kGibibyte;
 
+film::Fat make_fat(const SimulationSpec& spec) {
+  film::Fat fat;
+  fat.viscosity = spec.fat_viscosity;
+  fat.density = spec.fat_density;
+  fat.flow_index = spec.fat_flow_index;
+  fat.yield_stress = spec.fat_yield_stress;
+  if (spec.fat_shear_modulus.has_value()) fat.shear_modulus = *spec.fat_shear_modulus;
+  return fat;
+}
+
 }  // namespace
 
 CoupledStep::CoupledStep(const FaceModel& model, const std::vector<FilmLayout>& films, const SimulationSpec& spec)
@@ -21,15 +32,15 @@ CoupledStep::CoupledStep(const FaceModel& model, const std::vector<FilmLayout>& 
       films_(films),
       coupling_(spec.coupling),
       gravity_(spec.gravity),
-      fat_density_(spec.fat_density),
-      fat_viscosity_(spec.fat_viscosity) {}
+      fat_(make_fat(spec)),
+      suction_limit_(spec.suction_limit.value_or(std::numeric_limits<double>::infinity())) {}
 
 absl::StatusOr<std::unique_ptr<CoupledStep>> CoupledStep::create(const FaceModel& model,
                                                                  const std::vector<FilmLayout>& films,
                                                                  const SimulationSpec& spec) {
   std::unique_ptr<CoupledStep> step(new CoupledStep(model, films, spec));
   if (!model.layers.empty()) {
-    auto tissue = set_up_tissue(model, films, {spec.damping_mass, spec.damping_stiffness});
+    auto tissue = set_up_tissue(model, films, spec);
     if (!tissue.ok()) return tissue.status();
     step->tissue_ = std::make_unique<TissueSetup>(*std::move(tissue));
   }
@@ -113,11 +124,18 @@ SimulationState CoupledStep::rest_state() const {
   if (tissue_) {
     state.positions = tissue_->tissue.mesh().rest_positions;
     state.velocities.setZero(3, state.positions.cols());
+    state.spring_is_intact.setOnes(n_ligament_springs());
   }
   for (size_t f = 0; f < films_.size(); ++f) {
     const film::FilmGrid& grid = films_[f].grid;
-    state.films.push_back({rest_volume_.segment(cell_offset_[f], grid.n_cells()), Eigen::VectorXd::Zero(grid.n_cells()),
-                           Eigen::VectorXd::Zero(grid.n_edges())});
+    FilmState film;
+    film.volume = rest_volume_.segment(cell_offset_[f], grid.n_cells());
+    film.pressure.setZero(grid.n_cells());
+    film.velocity.setZero(grid.n_edges());
+    film.volume_rate.setZero(grid.n_cells());
+    if (fat_.is_elastic()) film.wall_stress.setZero(grid.n_edges());
+    if (films_[f].connective_tissue.entry_pressure > 0.0) film.is_entered.setZero(grid.n_cells());
+    state.films.push_back(std::move(film));
   }
   return state;
 }

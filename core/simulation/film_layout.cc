@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/anatomy/regions.h"
 #include "core/base/field_violations.h"
+#include "core/simulation/film_walls.h"
 
 namespace lipofill::simulation {
 namespace {
@@ -48,6 +49,19 @@ void check_grid_counts(const FilmSpec& spec, FieldViolations& violations) {
   if (static_cast<int64_t>(spec.n_xi) * spec.n_eta > most) {
     violations.add("n_xi", absl::StrCat("times n_eta is ", static_cast<int64_t>(spec.n_xi) * spec.n_eta,
                                         " cells, must be at most ", most));
+  }
+}
+
+void check_connective_tissue(const FilmSpec& spec, FieldViolations& violations) {
+  const ConnectiveTissueSpec& fibres = spec.connective_tissue;
+  violations.check_range("connective_tissue.stiffness_kpa_per_mm", fibres.stiffness / kStiffnessUnit, 0.0, 1e6,
+                         "kPa/mm");
+  violations.check_range("connective_tissue.entry_pressure_pa", fibres.entry_pressure, 0.0, 1e7, "Pa");
+  if (fibres.stiffness > 0.0 && spec.wall != FilmWallKind::kTissue) {
+    violations.add("connective_tissue.stiffness_kpa_per_mm", "is given, but only films on tissue have fibres");
+  }
+  if (fibres.entry_pressure > 0.0 && spec.wall == FilmWallKind::kRigid) {
+    violations.add("connective_tissue.entry_pressure_pa", "is given, but nothing gives way between rigid walls");
   }
 }
 
@@ -173,6 +187,7 @@ absl::StatusOr<FilmLayout> place_film(const FaceModel& model, const FilmSpec& sp
   if (spec.wall == FilmWallKind::kWinkler) {
     violations.check_range("wall.stiffness_kpa_per_mm", spec.wall_stiffness / kStiffnessUnit, 1e-9, 1e9, "kPa/mm");
   }
+  check_connective_tissue(spec, violations);
   FilmLayout layout;
   if (spec.wall == FilmWallKind::kTissue) {
     layout.level = find_level(model, spec, violations);
@@ -190,12 +205,17 @@ absl::StatusOr<FilmLayout> place_film(const FaceModel& model, const FilmSpec& sp
   if (!violations.empty()) return violations.to_status();
 
   layout.name = spec.name;
-  layout.grid = film::make_film_grid(spec.extent, spec.n_xi, spec.n_eta, zone_of_slot);
   for (const ZoneSpec& zone : spec.zones) layout.zone_names.push_back(zone.name);
+  auto walls = place_walls(model, spec, zone_of_slot);
+  if (!walls.ok()) return walls.status();
+  layout.walled_slots = walls->inside_zones;
+  layout.grid = film::make_film_grid(spec.extent, spec.n_xi, spec.n_eta, zone_of_slot, layout.walled_slots);
+  layout.grid.leaky_walls = find_leaky_walls(model.geometry.grid, layout.grid, *walls);
   layout.wall = spec.wall;
   layout.wall_stiffness = spec.wall_stiffness;
   layout.wall_friction = spec.wall_friction == WallFriction::kNoSlip;
   layout.rest_thickness = spec.rest_thickness;
+  layout.connective_tissue = spec.connective_tissue;
   layout.initial_thickness = spec.initial_thickness.value_or(spec.rest_thickness);
   return layout;
 }
@@ -210,39 +230,46 @@ Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film:
   return vertices;
 }
 
-std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const film::FilmGrid& film) {
+std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const FilmLayout& layout) {
+  const film::FilmGrid& film = layout.grid;
   const ChartBox& box = film.extent;
   constexpr double kRoundOff = 1e-9;
-  /// Zone that holds the whole quadrilateral, -1 when none does.
-  const auto zone_of_quad = [&](int qi, int qj) {
+  constexpr int kOutside = -1;
+  /// Adds the film's slots that a quadrilateral of the tissue overlaps.
+  const auto add_slots_of_quad = [&](int qi, int qj, std::set<int>& slots) {
     const auto to_film = [](double at, double low, double high, int n) { return (at - low) / (high - low) * n; };
     const double x0 = to_film(static_cast<double>(qi) / tissue.n_xi, box.xi_min, box.xi_max, film.n_xi);
     const double x1 = to_film(static_cast<double>(qi + 1) / tissue.n_xi, box.xi_min, box.xi_max, film.n_xi);
     const double y0 = to_film(static_cast<double>(qj) / tissue.n_eta, box.eta_min, box.eta_max, film.n_eta);
     const double y1 = to_film(static_cast<double>(qj + 1) / tissue.n_eta, box.eta_min, box.eta_max, film.n_eta);
-    if (x0 < -kRoundOff || y0 < -kRoundOff || x1 > film.n_xi + kRoundOff || y1 > film.n_eta + kRoundOff) return -1;
-    std::set<int> zones;
-    for (int j = static_cast<int>(y0 + kRoundOff); j < y1 - kRoundOff; ++j) {
-      for (int i = static_cast<int>(x0 + kRoundOff); i < x1 - kRoundOff; ++i) {
-        const int cell = film.cell_of_slot[j * film.n_xi + i];
-        zones.insert(cell < 0 ? -1 : film.zone_of_cell[cell]);
-      }
+    if (x0 < -kRoundOff || y0 < -kRoundOff || x1 > film.n_xi + kRoundOff || y1 > film.n_eta + kRoundOff) {
+      slots.insert(kOutside);
+      return;
     }
-    return zones.size() == 1 ? *zones.begin() : -1;
+    for (int j = static_cast<int>(y0 + kRoundOff); j < y1 - kRoundOff; ++j) {
+      for (int i = static_cast<int>(x0 + kRoundOff); i < x1 - kRoundOff; ++i) slots.insert(j * film.n_xi + i);
+    }
   };
-  std::vector<int> quads(static_cast<size_t>(tissue.n_xi) * tissue.n_eta);
-  for (int qj = 0; qj < tissue.n_eta; ++qj) {
-    for (int qi = 0; qi < tissue.n_xi; ++qi) quads[qj * tissue.n_xi + qi] = zone_of_quad(qi, qj);
-  }
+  const auto zone_of = [&](int slot) {
+    const int cell = slot == kOutside ? -1 : film.cell_of_slot[slot];
+    return cell < 0 ? -1 : film.zone_of_cell[cell];
+  };
+  const auto in_one_piece = [&](const std::set<int>& slots) {
+    const int zone = zone_of(*slots.begin());
+    if (zone < 0) return false;
+    if (!std::all_of(slots.begin(), slots.end(), [&](int slot) { return zone_of(slot) == zone; })) return false;
+    return std::none_of(layout.walled_slots.begin(), layout.walled_slots.end(), [&](const std::pair<int, int>& wall) {
+      return slots.contains(wall.first) && slots.contains(wall.second);
+    });
+  };
   std::vector<bool> open(tissue.nodes_per_level());
   for (int j = 0; j <= tissue.n_eta; ++j) {
     for (int i = 0; i <= tissue.n_xi; ++i) {
-      std::set<int> zones;
+      std::set<int> slots;
       for (int qj = std::max(j - 1, 0); qj <= std::min(j, tissue.n_eta - 1); ++qj) {
-        for (int qi = std::max(i - 1, 0); qi <= std::min(i, tissue.n_xi - 1); ++qi)
-          zones.insert(quads[qj * tissue.n_xi + qi]);
+        for (int qi = std::max(i - 1, 0); qi <= std::min(i, tissue.n_xi - 1); ++qi) add_slots_of_quad(qi, qj, slots);
       }
-      open[tissue.surface_index(i, j)] = zones.size() == 1 && *zones.begin() >= 0;
+      open[tissue.surface_index(i, j)] = in_one_piece(slots);
     }
   }
   return open;

@@ -22,6 +22,8 @@ struct FilmLayout {
   int level = -1;  ///< of the tissue, kTissue only
   geometry::ScalarField rest_thickness;
   geometry::ScalarField initial_thickness;
+  film::WalledSlots walled_slots;  ///< on both sides of walls inside zones
+  ConnectiveTissueSpec connective_tissue;
 
   int cell_at(const geometry::ChartPoint& place) const;
   geometry::ChartPoint cell_centre(int cell) const;
@@ -34,8 +36,8 @@ absl::StatusOr<FilmLayout> place_film(const FaceModel& model, const FilmSpec& sp
 /// Positions on the undeformed skin over the vertices of a film's grid [m] (3, n_vertices).
 Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film::FilmGrid& film);
 
-/// Flags of the level's nodes that are doubled: all quadrilaterals around the node lie in cells of one zone. The tissue
-/// stays bonded along the edges of zones.
-std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const film::FilmGrid& film);
+/// Flags of the level's nodes that are doubled: all quadrilaterals around the node lie in cells of one zone, on one
+/// side of its walls. The tissue stays bonded along the edges of zones and along walls.
+std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const FilmLayout& film);
 
 }  // namespace lipofill::simulation

@@ -24,7 +24,7 @@ constexpr double kOpeningStep = 1.0;
 bool CoupledStep::open_to(const Eigen::VectorXd& target, double tolerance, SimulationState& state,
                           Eigen::VectorXd& pressure) {
   for (int iteration = 0; iteration < kMaxOpeningIterations; ++iteration) {
-    if (!linearise_tissue(state.positions, kOpeningStep)) return false;
+    if (!linearise_tissue(state, kOpeningStep)) return false;
     // From the present positions at rest: no inertia and no damping, weight and internal force only.
     const Eigen::VectorXd force = compute_residual_force(state, state.positions, kOpeningStep);
     const Eigen::VectorXd response = factor_->compute_gap_response(force);
@@ -47,7 +47,12 @@ absl::Status CoupledStep::open_to_initial_thickness(SimulationState& state) {
       const geometry::ChartPoint centre = films_[f].cell_centre(cell);
       initial[cell_offset_[f] + cell] = rest_area_[f][cell] * films_[f].initial_thickness.at(centre.xi, centre.eta);
     }
-    state.films[f].volume = initial.segment(cell_offset_[f], films_[f].grid.n_cells());
+    const int n = films_[f].grid.n_cells();
+    state.films[f].volume = initial.segment(cell_offset_[f], n);
+    for (Eigen::Index cell = 0; cell < state.films[f].is_entered.size(); ++cell) {
+      const bool is_open = initial[cell_offset_[f] + cell] > rest_volume_[cell_offset_[f] + cell];
+      state.films[f].is_entered[cell] = static_cast<double>(is_open);
+    }
     if (films_[f].wall != FilmWallKind::kWinkler) continue;
     state.films[f].pressure = films_[f].wall_stiffness *
                               (state.films[f].volume - rest_volume_.segment(cell_offset_[f], films_[f].grid.n_cells()))

@@ -13,6 +13,8 @@ namespace {
 constexpr double kCubicMetrePerMillilitre = 1e-6;
 /// No tissue plane of the face takes more: mean thickness of the fat in a zone [m].
 constexpr double kMaxMeanThickness = 20e-3;
+/// Share of a cell's content that one step may take out of it.
+constexpr double kMostTaken = 0.95;
 
 /// Skin area over every cell of a film [m2].
 Eigen::VectorXd cell_areas(const FaceModel& model, const film::FilmGrid& grid) {
@@ -95,21 +97,43 @@ absl::Status InjectionSchedule::add(const FaceModel& model, const std::vector<Fi
   return absl::OkStatus();
 }
 
-std::vector<Eigen::VectorXd> InjectionSchedule::deliver(const std::vector<FilmLayout>& films, double time, double dt) {
+std::vector<Eigen::VectorXd> InjectionSchedule::deliver(const std::vector<FilmLayout>& films,
+                                                        const std::vector<FilmState>& states, double time, double dt) {
   std::vector<Eigen::VectorXd> received;
   for (const FilmLayout& film : films) received.push_back(Eigen::VectorXd::Zero(film.grid.n_cells()));
   for (Injection& injection : injections_) {
-    const double elapsed = std::max(0.0, time + dt - injection.start);
-    const double due = std::min(std::abs(injection.volume), injection.rate * elapsed);
-    const double amount = std::copysign(due, injection.volume) - injection.delivered;
+    const double amount = due(injection, time + dt) - injection.delivered;
     if (amount == 0.0) continue;
+    Eigen::VectorXd& into = received[injection.film];
+    const bool stays_full = films[injection.film].wall == FilmWallKind::kRigid;
+    double given = 0.0;
+    bool limited = false;
     for (size_t k = 0; k < injection.cells.size(); ++k) {
-      received[injection.film][injection.cells[k]] += injection.shares[k] * amount;
+      const int cell = injection.cells[k];
+      double share = injection.shares[k] * amount;
+      if (share < 0.0 && !stays_full) {
+        const double most = std::min(0.0, -kMostTaken * states[injection.film].volume[cell] - into[cell]);
+        limited = limited || share < most;
+        share = std::max(share, most);
+      }
+      into[cell] += share;
+      given += share;
     }
-    injection.delivered += amount;
-    delivered_ += amount;
+    injection.delivered += limited ? given : amount;
+    delivered_ += limited ? given : amount;
   }
   return received;
+}
+
+double InjectionSchedule::due(const Injection& injection, double time) {
+  const double elapsed = std::max(0.0, time - injection.start);
+  return std::copysign(std::min(std::abs(injection.volume), injection.rate * elapsed), injection.volume);
+}
+
+double InjectionSchedule::undelivered(double time) const {
+  double sum = 0.0;
+  for (const Injection& injection : injections_) sum += due(injection, time) - injection.delivered;
+  return sum;
 }
 
 std::vector<double> InjectionSchedule::delivered_each() const {

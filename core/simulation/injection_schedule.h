@@ -7,6 +7,7 @@
 #include "core/simulation/face_model.h"
 #include "core/simulation/film_layout.h"
 #include "core/simulation/simulation_spec.h"
+#include "core/simulation/simulation_state.h"
 
 namespace lipofill::simulation {
 
@@ -17,8 +18,13 @@ class InjectionSchedule {
   /// ends.
   absl::Status add(const FaceModel& model, const std::vector<FilmLayout>& films, const InjectionSpec& spec, double now);
 
-  /// Volume that each cell of each film receives between `time` and `time + dt`, and notes it as delivered [m3].
-  std::vector<Eigen::VectorXd> deliver(const std::vector<FilmLayout>& films, double time, double dt);
+  /// Volume that each cell of each film receives between `time` and `time + dt`, and notes it as delivered [m3]. No
+  /// more is taken out of a cell than nearly all that it holds; the rest stays due. Rigid walls keep their film full.
+  std::vector<Eigen::VectorXd> deliver(const std::vector<FilmLayout>& films, const std::vector<FilmState>& states,
+                                       double time, double dt);
+
+  /// What is due by `time` and not delivered: more was to be taken out than was there [m3], negative or 0.
+  double undelivered(double time) const;
 
   /// Sum of all that has been delivered [m3].
   double delivered() const { return delivered_; }
@@ -39,6 +45,9 @@ class InjectionSchedule {
     double start = 0.0;          ///< [s]
     double delivered = 0.0;      ///< [m3]
   };
+  /// Volume that should have been delivered by `time` [m3].
+  static double due(const Injection& injection, double time);
+
   std::vector<Injection> injections_;
   double delivered_ = 0.0;
   double end_ = 0.0;

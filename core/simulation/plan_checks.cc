@@ -34,16 +34,41 @@ void check_time(const SimulationSpec& spec, FieldViolations& violations) {
     violations.check_range("time.max_step_ms", *spec.max_step / kSecondsPerMillisecond,
                            spec.step / kSecondsPerMillisecond, 60000.0, "ms");
   }
+  violations.check_range("time.error_tolerance_mm", spec.error_tolerance * 1e3, 1e-9, 100.0, "mm");
   violations.check_range("time.end_s", spec.end, 1e-6, 1e6, "s");
   violations.check_range("time.settle_skin_speed_mm_per_s", spec.settle_skin_speed * 1e3, 0.0, 1000.0, "mm/s");
+}
+
+/// Without friction on the walls there is no shear across the film for a yield stress or a spring to act on.
+void check_friction(const SimulationSpec& spec, FieldViolations& violations) {
+  const bool newtonian = spec.fat_flow_index == 1.0 && spec.fat_yield_stress == 0.0;
+  if (newtonian && !spec.fat_shear_modulus.has_value()) return;
+  for (size_t f = 0; f < spec.films.size(); ++f) {
+    if (spec.films[f].wall_friction == WallFriction::kNoSlip) continue;
+    violations.add(absl::StrCat("films[", f, "].wall_friction"),
+                   "is NONE, which is for Newtonian fat: flow index 1, no yield stress, no shear modulus");
+  }
 }
 
 }  // namespace
 
 absl::Status check_plan(const SimulationSpec& spec) {
   FieldViolations violations;
-  violations.check_range("fat.viscosity_pa_s", spec.fat_viscosity, 1e-4, 1e6, "Pa s");
+  if (spec.fat_flow_index == 1.0) {
+    violations.check_range("fat.viscosity_pa_s", spec.fat_viscosity, 1e-4, 1e6, "Pa s");
+  } else {
+    violations.check_range("fat.consistency_pa_s_n", spec.fat_viscosity, 1e-4, 1e6, "Pa s^n");
+  }
   violations.check_range("fat.density_kg_m3", spec.fat_density, 1.0, 30000.0, "kg/m3");
+  violations.check_range("fat.flow_index", spec.fat_flow_index, 0.1, 1.0, "");
+  violations.check_range("fat.yield_stress_pa", spec.fat_yield_stress, 0.0, 1e6, "Pa");
+  if (spec.fat_shear_modulus.has_value()) {
+    violations.check_range("fat.shear_modulus_pa", *spec.fat_shear_modulus, 1e-3, 1e9, "Pa");
+  }
+  if (spec.suction_limit.has_value()) {
+    violations.check_range("suction_limit_pa", *spec.suction_limit, 0.0, 1e7, "Pa");
+  }
+  check_friction(spec, violations);
   check_time(spec, violations);
   violations.check_range("damping.mass_per_s", spec.damping_mass, 0.0, 1e6, "1/s");
   violations.check_range("damping.stiffness_s", spec.damping_stiffness, 0.0, 1e3, "s");

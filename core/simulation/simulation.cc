@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -15,10 +16,12 @@ namespace {
 
 /// A step that does not converge is tried again at half its size, down to this share of the plan's step.
 constexpr double kSmallestStepShare = 1.0 / 1024.0;
-constexpr double kStepGrowth = 1.25;
-/// A step grows only when the last one was easy.
+/// A step grows at most by this, and only when the last one was easy.
+constexpr double kStepGrowth = 2.0;
 constexpr int kEasyFilmIterations = 30;
-constexpr int kEasyNewtonIterations = 3;
+constexpr int kEasyNewtonIterations = 4;
+/// A step aims at this share of the size that the error estimate allows.
+constexpr double kStepSafety = 0.8;
 /// The skin counts as at rest after this many slow steps in a row.
 constexpr int kSettledSteps = 5;
 
@@ -60,11 +63,7 @@ absl::Status Simulation::Impl::set_up() {
   state.next_step = spec.step;
   for (const FilmState& film : state.films) initial_volume += film.volume.sum();
 
-  StepOutcome start;
-  start.state = state;
-  start.gap = stepper->compute_gap(state);
-  start.min_scaled_jacobian = model->geometry.grid.min_scaled_jacobian;
-  fill_report(start, 0.0);
+  fill_report(stepper->describe(state), 0.0);
   return absl::OkStatus();
 }
 
@@ -113,29 +112,67 @@ StepOutcome Simulation::Impl::try_with_smaller_steps() {
   const double total = schedule.delivered();
   const double smallest = spec.step * kSmallestStepShare;
   StepOutcome outcome;
-  for (double dt = std::max(state.next_step, smallest); dt >= smallest; dt *= 0.5) {
-    outcome = stepper->try_step(state, schedule.deliver(films, state.time, dt), dt);
-    if (outcome.accepted) return outcome;
+  uint64_t rejected = state.rejected_steps;
+  for (double dt = std::max(state.next_step, smallest); dt >= smallest;) {
+    outcome = stepper->try_step(state, schedule.deliver(films, state.films, state.time, dt), dt);
+    outcome.state.rejected_steps = rejected;
+    if (outcome.accepted) {
+      outcome.error = estimate_error(outcome.state, dt);
+      if (dt <= spec.step || outcome.error <= spec.error_tolerance) return outcome;
+    }
     schedule.restore_delivered(delivered, total);
+    ++rejected;
+    dt = outcome.accepted ? std::max(spec.step, std::min(0.5 * dt, allowed_step(dt, outcome.error))) : 0.5 * dt;
   }
+  outcome.accepted = false;
   outcome.reason = absl::StrCat("at ", state.time, " s, with steps down to ", smallest * 1e3, " ms: ", outcome.reason);
   return outcome;
 }
 
+/// Local error of implicit Euler, dt^2 x''/2, from how far the step leaves the line of the last one: the largest over
+/// the positions of the tissue and the thickness of the films [m].
+double Simulation::Impl::estimate_error(const SimulationState& next, double dt) const {
+  double deviation = 0.0;
+  if (state.positions.size() > 0) {
+    const Eigen::Matrix3Xd off = next.positions - state.positions - dt * state.velocities;
+    deviation = off.colwise().norm().maxCoeff();
+  }
+  for (size_t f = 0; f < films.size(); ++f) {
+    const Eigen::VectorXd off = next.films[f].volume - state.films[f].volume - dt * state.films[f].volume_rate;
+    deviation = std::max(deviation, off.cwiseQuotient(stepper->rest_area(static_cast<int>(f))).cwiseAbs().maxCoeff());
+  }
+  return deviation * dt / (dt + state.last_step);
+}
+
+double Simulation::Impl::allowed_step(double dt, double error) const {
+  const double room = spec.error_tolerance / std::max(error, 1e-300);
+  return kStepSafety * dt * std::sqrt(std::min(room, 1e6));
+}
+
 void Simulation::Impl::accept(StepOutcome outcome, double dt) {
+  const double last_speed = state.skin_speed;
   fill_report(outcome, dt);
+  report.settling_error = estimate_settling_error(last_speed, dt);
   state = std::move(outcome.state);
-  choose_next_step(outcome);
+  state.skin_speed = report.skin_speed;
+  choose_next_step(outcome, dt);
   decide_phase();
 }
 
-void Simulation::Impl::choose_next_step(const StepOutcome& outcome) {
+/// How far the skin has still to go, were its speed to fall on as it did over the last step; infinity when it rose.
+double Simulation::Impl::estimate_settling_error(double last_speed, double dt) const {
+  if (report.skin_speed == 0.0) return 0.0;
+  if (report.skin_speed >= last_speed) return std::numeric_limits<double>::infinity();
+  return report.skin_speed * dt / std::log(last_speed / report.skin_speed);
+}
+
+void Simulation::Impl::choose_next_step(const StepOutcome& outcome, double dt) {
   const bool injecting = state.time < schedule.end();
   const double largest = injecting ? spec.step : spec.max_step.value_or(spec.step);
   const bool easy =
       outcome.film_iterations <= kEasyFilmIterations && outcome.newton_iterations <= kEasyNewtonIterations;
-  const double grown = easy ? report.step_size * kStepGrowth : report.step_size;
-  state.next_step = std::min(std::max(grown, std::min(spec.step, 2.0 * report.step_size)), largest);
+  const double growth = easy ? std::min(kStepGrowth * dt, std::max(dt, allowed_step(dt, outcome.error))) : dt;
+  state.next_step = std::min(std::max(growth, std::min(spec.step, 2.0 * dt)), largest);
 }
 
 void Simulation::Impl::decide_phase() {

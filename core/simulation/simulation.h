@@ -24,6 +24,15 @@ struct ZoneReport {
   double max_thickness = 0.0;  ///< [m]
 };
 
+/// A ligament's springs taken together.
+struct LigamentReport {
+  std::string name;
+  double tension = 0.0;         ///< sum over its points [N]
+  double largest_length = 0.0;  ///< distance of the two walls [m]
+  int points = 0;
+  int broken_points = 0;
+};
+
 /// Figures of the state after a step.
 struct StepReport {
   uint64_t step = 0;
@@ -45,6 +54,18 @@ struct StepReport {
   double min_scaled_jacobian = 1.0;    ///< of the deformed tissue
   int film_iterations = 0;             ///< Picard iterations in this step
   int newton_iterations = 0;
+  double void_volume = 0.0;       ///< gap that is neither fat nor closed, at the suction limit [m3]
+  double undelivered = 0.0;       ///< what injections owe because there was no more to take out [m3], <= 0
+  uint64_t rejected_steps = 0;    ///< tried and taken back since the start
+  double error_estimate = 0.0;    ///< local error of the step on positions and thickness [m]
+  double settling_error = 0.0;    ///< how far the skin has still to go, by the fall of its speed [m]; may be infinite
+  double elastic_energy = 0.0;    ///< [J]
+  double kinetic_energy = 0.0;    ///< of the tissue [J]
+  double injection_work = 0.0;    ///< since the start [J]
+  double film_dissipation = 0.0;  ///< since the start [J]
+  double ligament_tension = 0.0;  ///< sum over all ligaments [N]
+  int broken_ligament_points = 0;
+  int closed_cells = 0;                 ///< cells that fat has not entered
   std::vector<double> probe_thickness;  ///< [m]
   std::vector<double> probe_pressure;   ///< [Pa]
 };
@@ -89,6 +110,7 @@ class Simulation {
   const std::string& reason() const;
   const StepReport& report() const;
   std::vector<ZoneReport> zone_reports() const;
+  std::vector<LigamentReport> ligament_reports() const;
 
   /// Adds an injection to the plan; without a start it begins now, or after the last one still due. Field violations
   /// named as in lipofill.v1.Injection. A settled or finished simulation does not take one: FAILED_PRECONDITION.

@@ -30,6 +30,7 @@ struct Simulation::Impl {
   Phase phase = Phase::kRunning;
   std::string reason;
   StepReport report;
+  std::vector<LigamentReport> ligaments;
   double initial_volume = 0.0;
 
   absl::Status set_up();
@@ -37,11 +38,15 @@ struct Simulation::Impl {
   absl::Status add_injection(const InjectionSpec& injection, double now);
   StepOutcome try_with_smaller_steps();
   void accept(StepOutcome outcome, double dt);
-  void choose_next_step(const StepOutcome& outcome);
+  double estimate_error(const SimulationState& next, double dt) const;
+  double allowed_step(double dt, double error) const;
+  double estimate_settling_error(double last_speed, double dt) const;
+  void choose_next_step(const StepOutcome& outcome, double dt);
   void fail(std::string why);
   void decide_phase();
 
   void fill_report(const StepOutcome& outcome, double dt);
+  void report_ligaments(const StepOutcome& outcome);
   Eigen::Matrix3Xd skin_positions() const;
   Eigen::Matrix3Xd skin_displacement() const;
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <variant>
@@ -31,6 +32,20 @@ struct ZoneSpec {
   std::variant<ChartBox, Disc, NamedRegion> shape;
 };
 
+/// A wall of a film: a line through its zones, or where two of its zones touch.
+struct WallSpec {
+  std::string name;
+  std::vector<geometry::SkinPoint> path;  ///< at least two points; empty: `between`
+  std::array<std::string, 2> between;     ///< names of two zones
+  double leakage = 0.0;                   ///< flux per length and pressure difference [m2/(Pa s)]; 0: tight
+};
+
+/// Fibres that hold the walls of a film together.
+struct ConnectiveTissueSpec {
+  double stiffness = 0.0;       ///< of the fibres, per area [Pa/m]; 0: none
+  double entry_pressure = 0.0;  ///< of the fat beside a cell that it has not entered, above which it does [Pa]; 0: open
+};
+
 struct FilmSpec {
   std::string name;
   std::string below_layer;
@@ -43,6 +58,23 @@ struct FilmSpec {
   WallFriction wall_friction = WallFriction::kNoSlip;
   FilmWallKind wall = FilmWallKind::kTissue;
   double wall_stiffness = 0.0;  ///< [Pa/m], kWinkler only
+  std::vector<WallSpec> walls;
+  ConnectiveTissueSpec connective_tissue;
+};
+
+struct NamedLigament {
+  std::string name;
+};
+
+/// Springs between the outer wall of one film and the inner wall of another, or of the same.
+struct LigamentSpec {
+  std::string name;
+  std::string film;        ///< the outermost film it crosses; empty: the first on tissue
+  std::string inner_film;  ///< the innermost; empty: the same
+  std::variant<std::vector<geometry::SkinPoint>, NamedLigament> place;
+  std::optional<double> stiffness;       ///< of each point [N/m]; a named ligament has its own
+  double slack = 0.0;                    ///< [m]
+  std::optional<double> breaking_force;  ///< of each point [N]; none: it holds
 };
 
 struct InjectionSpec {
@@ -61,8 +93,12 @@ struct ProbeSpec {
 
 /// All that a simulation is made from besides its model; lipofill.v1.SimulationSpec in SI.
 struct SimulationSpec {
-  double fat_viscosity = 15.0;  ///< [Pa s]
-  double fat_density = 920.0;   ///< [kg/m3]
+  double fat_viscosity = 15.0;              ///< [Pa s]
+  double fat_density = 920.0;               ///< [kg/m3]
+  double fat_flow_index = 1.0;              ///< n; then fat_viscosity is the consistency [Pa s^n]
+  double fat_yield_stress = 0.0;            ///< [Pa]
+  std::optional<double> fat_shear_modulus;  ///< of a Maxwell element [Pa]
+  std::optional<double> suction_limit;      ///< a void opens in the film below minus this pressure [Pa]
   std::vector<FilmSpec> films;
   std::vector<InjectionSpec> injections;
   double step = 0.010;                 ///< [s]
@@ -74,6 +110,8 @@ struct SimulationSpec {
   double damping_mass = 0.0;                          ///< alpha [1/s]
   double damping_stiffness = 0.0;                     ///< beta [s]
   std::vector<ProbeSpec> probes;
+  std::vector<LigamentSpec> ligaments;
+  double error_tolerance = 0.02e-3;  ///< of a step longer than `step`, on skin and thickness [m]
 };
 
 }  // namespace lipofill::simulation

@@ -6,21 +6,30 @@
 
 namespace lipofill::simulation {
 
-/// A film's unknowns.
+/// A film's unknowns, and what it remembers.
 struct FilmState {
-  Eigen::VectorXd volume;    ///< V [m3] (n_cells)
-  Eigen::VectorXd pressure;  ///< p [Pa] (n_cells)
-  Eigen::VectorXd velocity;  ///< U [m2/s] (n_edges)
+  Eigen::VectorXd volume;       ///< V [m3] (n_cells)
+  Eigen::VectorXd pressure;     ///< p [Pa] (n_cells)
+  Eigen::VectorXd velocity;     ///< U [m2/s] (n_edges)
+  Eigen::VectorXd volume_rate;  ///< dV/dt of the last step [m3/s] (n_cells)
+  Eigen::VectorXd wall_stress;  ///< T of film::FilmStepInput [Pa m] (n_edges); empty: fat is not elastic
+  Eigen::VectorXd is_entered;   ///< 1 where fat has parted the connective tissue, else 0 (n_cells); empty: all open
 };
 
 /// All that changes from step to step and decides the next: what a snapshot holds.
 struct SimulationState {
   uint64_t step = 0;
-  double time = 0.0;            ///< [s]
-  double next_step = 0.0;       ///< size of the next step [s]
-  int slow_steps = 0;           ///< steps in a row with the skin slower than the settling speed
-  Eigen::Matrix3Xd positions;   ///< [m]   (3, n_nodes); empty without tissue
-  Eigen::Matrix3Xd velocities;  ///< [m/s] (3, n_nodes)
+  double time = 0.0;                 ///< [s]
+  double last_step = 0.0;            ///< size of the last step [s]
+  double next_step = 0.0;            ///< size of the next step [s]
+  uint64_t rejected_steps = 0;       ///< tried and taken back since the start
+  int slow_steps = 0;                ///< steps in a row with the skin slower than the settling speed
+  double skin_speed = 0.0;           ///< largest over the nodes of the skin in the last step [m/s]
+  double injection_work = 0.0;       ///< done by sources since the start, sum of p dV [J]
+  double film_dissipation = 0.0;     ///< lost to friction in the films since the start [J]
+  Eigen::Matrix3Xd positions;        ///< [m]   (3, n_nodes); empty without tissue
+  Eigen::Matrix3Xd velocities;       ///< [m/s] (3, n_nodes)
+  Eigen::VectorXd spring_is_intact;  ///< 1 or 0, of every spring of a ligament
   std::vector<FilmState> films;
 };
 

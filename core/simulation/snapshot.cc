@@ -7,21 +7,28 @@
 namespace lipofill::simulation {
 namespace {
 
-constexpr char kMagic[] = "lipofill-state-1";
+constexpr char kMagic[] = "lipofill-state-2";
 
 /// Visits every number of the mutable state in a fixed order, so that writing, reading and hashing cannot disagree.
 template <typename Visitor>
 void visit_state(SimulationState& state, Visitor& visit) {
   visit.number(state.step);
   visit.number(state.time);
+  visit.number(state.last_step);
   visit.number(state.next_step);
+  visit.number(state.rejected_steps);
   visit.number(state.slow_steps);
+  visit.number(state.skin_speed);
+  visit.number(state.injection_work);
+  visit.number(state.film_dissipation);
   visit.array(state.positions.data(), state.positions.size());
   visit.array(state.velocities.data(), state.velocities.size());
+  visit.array(state.spring_is_intact.data(), state.spring_is_intact.size());
   for (FilmState& film : state.films) {
-    visit.array(film.volume.data(), film.volume.size());
-    visit.array(film.pressure.data(), film.pressure.size());
-    visit.array(film.velocity.data(), film.velocity.size());
+    for (Eigen::VectorXd* values :
+         {&film.volume, &film.pressure, &film.velocity, &film.volume_rate, &film.wall_stress, &film.is_entered}) {
+      visit.array(values->data(), values->size());
+    }
   }
 }
 
@@ -118,11 +125,7 @@ absl::Status Simulation::restore(std::string_view snapshot) {
   impl.phase = static_cast<Phase>(phase);
   impl.schedule.restore_delivered(delivered, total);
   impl.initial_volume = initial;
-  StepOutcome here;
-  here.state = impl.state;
-  here.gap = impl.stepper->compute_gap(impl.state);
-  here.min_scaled_jacobian = impl.stepper->compute_min_scaled_jacobian(impl.state);
-  impl.fill_report(here, 0.0);
+  impl.fill_report(impl.stepper->describe(impl.state), impl.state.last_step);
   return absl::OkStatus();
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/coupling/gap_volume.h"
 #include "core/simulation/simulation_impl.h"
@@ -17,14 +18,19 @@ struct FilmFigures {
   double volume = 0.0;
   double max_thickness = 0.0;
 
-  void add(double cell_pressure, double cell_volume, double cell_area) {
-    max_pressure = std::max(max_pressure, cell_pressure);
-    min_pressure = std::min(min_pressure, cell_pressure);
-    pressure_area += cell_pressure * cell_area;
-    area += cell_area;
+  /// The pressure of a cell that fat has not entered is the pull of the tissue that holds it shut: it does not count.
+  void add(const FilmState& film, int cell, double cell_area) {
+    const double cell_volume = film.volume[cell];
+    if (film.is_entered.size() == 0 || film.is_entered[cell] > 0.0) {
+      max_pressure = std::max(max_pressure, film.pressure[cell]);
+      min_pressure = std::min(min_pressure, film.pressure[cell]);
+      pressure_area += film.pressure[cell] * cell_area;
+      area += cell_area;
+    }
     volume += cell_volume;
     max_thickness = std::max(max_thickness, cell_volume / cell_area);
   }
+  double mean_pressure() const { return area > 0.0 ? pressure_area / area : 0.0; }
 };
 
 double largest_column(const Eigen::Matrix3Xd& vectors) {
@@ -55,8 +61,7 @@ void Simulation::Impl::fill_report(const StepOutcome& outcome, double dt) {
   for (size_t f = 0; f < films.size(); ++f) {
     const Eigen::VectorXd area = stepper->film_metric(next, static_cast<int>(f)).area;
     const FilmState& film = next.films[f];
-    for (int cell = 0; cell < films[f].grid.n_cells(); ++cell)
-      figures.add(film.pressure[cell], film.volume[cell], area[cell]);
+    for (int cell = 0; cell < films[f].grid.n_cells(); ++cell) figures.add(film, cell, area[cell]);
     for (size_t k = 0; k < probes.size(); ++k) {
       if (probes[k].film != static_cast<int>(f)) continue;
       report.probe_thickness[k] = film.volume[probes[k].cell] / area[probes[k].cell];
@@ -75,14 +80,30 @@ void Simulation::Impl::fill_report(const StepOutcome& outcome, double dt) {
   double mismatch = 0.0;
   Eigen::Index offset = 0;
   for (const FilmState& film : next.films) {
-    mismatch += (outcome.gap.segment(offset, film.volume.size()) - film.volume).cwiseAbs().sum();
+    const auto held = outcome.void_volume.segment(offset, film.volume.size());
+    mismatch += (outcome.gap.segment(offset, film.volume.size()) - film.volume - held).cwiseAbs().sum();
     offset += film.volume.size();
   }
   report.gap_volume_relative_error = mismatch / std::max(figures.volume, std::numeric_limits<double>::min());
-  report.max_pressure = figures.max_pressure;
-  report.min_pressure = figures.min_pressure;
-  report.mean_pressure = figures.pressure_area / figures.area;
+  report.max_pressure = std::isfinite(figures.max_pressure) ? figures.max_pressure : 0.0;
+  report.min_pressure = std::isfinite(figures.min_pressure) ? figures.min_pressure : 0.0;
+  report.mean_pressure = figures.mean_pressure();
   report.max_thickness = figures.max_thickness;
+  report.void_volume = outcome.void_volume.sum();
+  report.undelivered = schedule.undelivered(next.time);
+  report.rejected_steps = next.rejected_steps;
+  report.error_estimate = outcome.error;
+  report.elastic_energy = outcome.elastic_energy;
+  report.kinetic_energy = outcome.kinetic_energy;
+  report.injection_work = next.injection_work;
+  report.film_dissipation = next.film_dissipation;
+  report.ligament_tension = outcome.spring_tension.sum();
+  report.broken_ligament_points = static_cast<int>((next.spring_is_intact.array() == 0.0).count());
+  report.closed_cells = 0;
+  for (const FilmState& film : next.films) {
+    report.closed_cells += static_cast<int>((film.is_entered.array() == 0.0).count());
+  }
+  report_ligaments(outcome);
   report.film_iterations = outcome.film_iterations;
   report.newton_iterations = outcome.newton_iterations;
   report.min_scaled_jacobian = outcome.min_scaled_jacobian;
@@ -101,6 +122,24 @@ void Simulation::Impl::fill_report(const StepOutcome& outcome, double dt) {
   report.skin_volume_change = coupling::compute_swept_volume(grid, rest, skin);
 }
 
+void Simulation::Impl::report_ligaments(const StepOutcome& outcome) {
+  ligaments.clear();
+  if (stepper->tissue() == nullptr) return;
+  for (const LigamentLayout& layout : stepper->tissue()->ligaments) {
+    LigamentReport ligament{layout.name, 0.0, 0.0, layout.n_springs, 0};
+    for (int k = layout.first_spring; k < layout.first_spring + layout.n_springs; ++k) {
+      ligament.tension += outcome.spring_tension[k];
+      ligament.largest_length = std::max(ligament.largest_length, outcome.spring_length[k]);
+      ligament.broken_points += outcome.state.spring_is_intact[k] == 0.0;
+    }
+    ligaments.push_back(std::move(ligament));
+  }
+}
+
+std::vector<LigamentReport> Simulation::ligament_reports() const {
+  return impl_->ligaments;
+}
+
 std::vector<ZoneReport> Simulation::zone_reports() const {
   std::vector<ZoneReport> reports;
   const Impl& impl = *impl_;
@@ -109,12 +148,10 @@ std::vector<ZoneReport> Simulation::zone_reports() const {
     const Eigen::VectorXd area = impl.stepper->film_metric(impl.state, static_cast<int>(f)).area;
     std::vector<FilmFigures> zones(layout.zone_names.size());
     for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {
-      zones[layout.grid.zone_of_cell[cell]].add(impl.state.films[f].pressure[cell], impl.state.films[f].volume[cell],
-                                                area[cell]);
+      zones[layout.grid.zone_of_cell[cell]].add(impl.state.films[f], cell, area[cell]);
     }
     for (size_t z = 0; z < zones.size(); ++z) {
-      reports.push_back(
-          {layout.zone_names[z], zones[z].volume, zones[z].pressure_area / zones[z].area, zones[z].max_thickness});
+      reports.push_back({layout.zone_names[z], zones[z].volume, zones[z].mean_pressure(), zones[z].max_thickness});
     }
   }
   return reports;

@@ -101,7 +101,7 @@ HeldMesh hold_mesh(const FaceModel& model, const std::vector<FilmLayout>& films)
   std::vector<std::vector<bool>> open(grid.n_levels());
   for (const FilmLayout& film : films) {
     if (film.wall != FilmWallKind::kTissue) continue;
-    const std::vector<bool> of_film = find_open_nodes(grid, film.grid);
+    const std::vector<bool> of_film = find_open_nodes(grid, film);
     std::vector<bool>& level = open[film.level];
     if (level.empty()) level.assign(grid.nodes_per_level(), false);
     for (size_t s = 0; s < of_film.size(); ++s) level[s] = level[s] || of_film[s];
@@ -117,14 +117,21 @@ HeldMesh hold_mesh(const FaceModel& model, const std::vector<FilmLayout>& films)
 }
 
 absl::StatusOr<TissueSetup> set_up_tissue(const FaceModel& model, const std::vector<FilmLayout>& films,
-                                          const solid::RayleighDamping& damping) {
+                                          const SimulationSpec& spec) {
   HeldMesh held = hold_mesh(model, films);
+  std::vector<FilmOnTissue> films_on_tissue;
+  for (const FilmLayout& film : films) {
+    if (film.wall == FilmWallKind::kTissue) films_on_tissue.push_back({&film, &held.walls[films_on_tissue.size()]});
+  }
+  auto fibres = place_wall_fibres(model, films_on_tissue, spec.ligaments, held.split.mesh);
+  if (!fibres.ok()) return fibres.status();
   std::vector<solid::ElasticMaterial> materials;
   for (const TissueLayerSpec& layer : model.layers) materials.push_back(layer.material);
-  auto tissue =
-      solid::Tissue::create(std::move(held.split.mesh), std::move(materials), std::move(held.supports), damping);
+  auto tissue = solid::Tissue::create(std::move(held.split.mesh), std::move(materials), std::move(held.supports),
+                                      {spec.damping_mass, spec.damping_stiffness}, std::move(fibres->springs));
   if (!tissue.ok()) return tissue.status();
-  return TissueSetup{*std::move(tissue), std::move(held.walls), std::move(held.skin_nodes)};
+  return TissueSetup{*std::move(tissue), std::move(held.walls), std::move(held.skin_nodes),
+                     std::move(fibres->ligaments)};
 }
 
 }  // namespace lipofill::simulation

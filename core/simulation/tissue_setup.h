@@ -7,6 +7,8 @@
 #include "core/coupling/split_mesh.h"
 #include "core/simulation/face_model.h"
 #include "core/simulation/film_layout.h"
+#include "core/simulation/simulation_spec.h"
+#include "core/simulation/wall_fibres.h"
 #include "core/solid/tissue.h"
 
 namespace lipofill::simulation {
@@ -28,10 +30,11 @@ struct TissueSetup {
   solid::Tissue tissue;
   std::vector<coupling::WallNodes> walls;  ///< a film on tissue, in the order of the films
   std::vector<int> skin_nodes;             ///< (nodes_per_level)
+  std::vector<LigamentLayout> ligaments;
 };
 
-/// Only for a model with layers.
+/// Only for a model with layers. Field violations of the plan's ligaments.
 absl::StatusOr<TissueSetup> set_up_tissue(const FaceModel& model, const std::vector<FilmLayout>& films,
-                                          const solid::RayleighDamping& damping);
+                                          const SimulationSpec& spec);
 
 }  // namespace lipofill::simulation

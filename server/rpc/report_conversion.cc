@@ -9,6 +9,7 @@ namespace {
 constexpr double kMillimetrePerMetre = 1e3;
 constexpr double kMillilitrePerCubicMetre = 1e6;
 constexpr double kMillisecondPerSecond = 1e3;
+constexpr double kMillijoulePerJoule = 1e3;
 
 /// Volume of the hexahedra of a grid [m3]: det(J) at 2 x 2 x 2 Gauss points, exact for trilinear shapes.
 double compute_tissue_volume(const geometry::LayeredGrid& grid) {
@@ -37,6 +38,26 @@ double compute_tissue_volume(const geometry::LayeredGrid& grid) {
   return volume;
 }
 
+void add_layers(const simulation::FaceModel& model, v1::ModelReport& report) {
+  for (size_t l = 0; l < model.layers.size(); ++l) {
+    v1::LayerReport& layer = *report.add_layers();
+    layer.set_name(model.layers[l].name);
+    layer.set_min_thickness_mm(model.thickness[l].min * kMillimetrePerMetre);
+    layer.set_mean_thickness_mm(model.thickness[l].mean * kMillimetrePerMetre);
+    layer.set_max_thickness_mm(model.thickness[l].max * kMillimetrePerMetre);
+  }
+}
+
+v1::BoneReport to_bone_report(const simulation::BoneFinding& bone) {
+  v1::BoneReport report;
+  report.set_measured_share(bone.measured_share);
+  report.set_limited_share(bone.limited_share);
+  report.set_min_depth_mm(bone.depth.min * kMillimetrePerMetre);
+  report.set_mean_depth_mm(bone.depth.mean * kMillimetrePerMetre);
+  report.set_max_depth_mm(bone.depth.max * kMillimetrePerMetre);
+  return report;
+}
+
 }  // namespace
 
 v1::ModelReport to_model_report(const simulation::FaceModel& model) {
@@ -51,6 +72,8 @@ v1::ModelReport to_model_report(const simulation::FaceModel& model) {
   report.set_scan_vertices_in_patch(static_cast<uint32_t>(face.riders.size()));
   report.set_max_chart_deviation_mm(face.max_rider_distance * kMillimetrePerMetre);
   for (const std::string& remark : face.scan_remarks) report.add_scan_remarks(remark);
+  add_layers(model, report);
+  if (model.bone) *report.mutable_bone() = to_bone_report(*model.bone);
   return report;
 }
 
@@ -91,6 +114,24 @@ v1::Summary to_summary(const SessionView& view) {
   summary.set_skin_volume_change_ml(step.skin_volume_change * kMillilitrePerCubicMetre);
   summary.set_min_scaled_jacobian(step.min_scaled_jacobian);
   summary.set_state_hash(view.state_hash);
+  summary.set_rejected_steps(step.rejected_steps);
+  summary.set_error_estimate_mm(step.error_estimate * kMillimetrePerMetre);
+  if (std::isfinite(step.settling_error)) summary.set_settling_error_mm(step.settling_error * kMillimetrePerMetre);
+  summary.set_void_volume_ml(step.void_volume * kMillilitrePerCubicMetre);
+  summary.set_undelivered_ml(step.undelivered * kMillilitrePerCubicMetre);
+  summary.set_elastic_energy_mj(step.elastic_energy * kMillijoulePerJoule);
+  summary.set_kinetic_energy_mj(step.kinetic_energy * kMillijoulePerJoule);
+  summary.set_injection_work_mj(step.injection_work * kMillijoulePerJoule);
+  summary.set_film_dissipation_mj(step.film_dissipation * kMillijoulePerJoule);
+  summary.set_closed_cells(static_cast<uint32_t>(step.closed_cells));
+  for (const simulation::LigamentReport& report : view.ligaments) {
+    v1::LigamentSummary* ligament = summary.add_ligaments();
+    ligament->set_name(report.name);
+    ligament->set_tension_n(report.tension);
+    ligament->set_largest_length_mm(report.largest_length * kMillimetrePerMetre);
+    ligament->set_points(static_cast<uint32_t>(report.points));
+    ligament->set_broken_points(static_cast<uint32_t>(report.broken_points));
+  }
   for (const simulation::ZoneReport& report : view.zones) {
     v1::ZoneSummary* zone = summary.add_zones();
     zone->set_name(report.name);
@@ -118,6 +159,15 @@ v1::SeriesRow to_series_row(const SeriesEntry& entry) {
   for (const double thickness : step.probe_thickness) row.add_probe_thickness_mm(thickness * kMillimetrePerMetre);
   for (const double pressure : step.probe_pressure) row.add_probe_pressure_pa(pressure);
   row.set_wall_ms(entry.wall_ms);
+  row.set_rejected_steps(step.rejected_steps);
+  row.set_error_estimate_mm(step.error_estimate * kMillimetrePerMetre);
+  row.set_void_volume_ml(step.void_volume * kMillilitrePerCubicMetre);
+  row.set_elastic_energy_mj(step.elastic_energy * kMillijoulePerJoule);
+  row.set_injection_work_mj(step.injection_work * kMillijoulePerJoule);
+  row.set_film_dissipation_mj(step.film_dissipation * kMillijoulePerJoule);
+  row.set_ligament_tension_n(step.ligament_tension);
+  row.set_broken_ligament_points(static_cast<uint32_t>(step.broken_ligament_points));
+  row.set_closed_cells(static_cast<uint32_t>(step.closed_cells));
   return row;
 }
 

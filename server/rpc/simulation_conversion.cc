@@ -1,5 +1,6 @@
 #include "server/rpc/simulation_conversion.h"
 
+#include "core/anatomy/fat_presets.h"
 #include "server/rpc/chart_conversion.h"
 
 namespace lipofill::server {
@@ -8,6 +9,9 @@ namespace {
 constexpr double kCubicMetrePerMillilitre = 1e-6;
 constexpr double kPascalPerMetrePerKilopascalPerMillimetre = 1e6;
 constexpr double kSecondPerMillisecond = 1e-3;
+constexpr double kNewtonPerMetrePerNewtonPerMillimetre = 1e3;
+/// m2/(Pa s) in a mL/(s kPa cm).
+constexpr double kLeakageUnit = 1e-6 / (1e3 * 1e-2);
 
 simulation::ChartBox read_box(const v1::ChartBox& message, const FieldReader& reader) {
   return {reader.required(message.has_xi_min(), message.xi_min(), 1.0, "xi_min"),
@@ -55,6 +59,33 @@ void read_wall(const v1::FilmWall& message, const FieldReader& reader, simulatio
   }
 }
 
+/// Points of a path or a ligament, the message at `reader`.
+template <typename Points>
+std::vector<geometry::SkinPoint> read_points(const Points& message, const FieldReader& reader) {
+  std::vector<geometry::SkinPoint> points;
+  for (int i = 0; i < message.points_size(); ++i) {
+    points.push_back(read_skin_point(message.points(i), reader.below("points", i)));
+  }
+  return points;
+}
+
+simulation::WallSpec read_wall_in_film(const v1::Wall& message, const FieldReader& reader) {
+  simulation::WallSpec wall;
+  wall.name = message.name();
+  if (message.name().empty()) reader.missing("name");
+  if (message.has_between()) {
+    wall.between = {message.between().first(), message.between().second()};
+    if (wall.between[0].empty()) reader.below("between").missing("first");
+    if (wall.between[1].empty()) reader.below("between").missing("second");
+  } else if (message.has_path()) {
+    wall.path = read_points(message.path(), reader.below("path"));
+  } else {
+    reader.wrong("path", "is missing, and so is between: one of them says where the wall is");
+  }
+  wall.leakage = message.leakage_ml_per_s_kpa_cm() * kLeakageUnit;
+  return wall;
+}
+
 simulation::FilmSpec read_film(const v1::Film& message, const FieldReader& reader) {
   simulation::FilmSpec film;
   film.name = message.name();
@@ -77,6 +108,12 @@ simulation::FilmSpec read_film(const v1::Film& message, const FieldReader& reade
   const bool frictionless = message.wall_friction() == v1::NONE;
   film.wall_friction = frictionless ? simulation::WallFriction::kNone : simulation::WallFriction::kNoSlip;
   read_wall(message.wall(), reader.below("wall"), film);
+  for (int i = 0; i < message.walls_size(); ++i) {
+    film.walls.push_back(read_wall_in_film(message.walls(i), reader.below("walls", i)));
+  }
+  film.connective_tissue = {
+      message.connective_tissue().stiffness_kpa_per_mm() * kPascalPerMetrePerKilopascalPerMillimetre,
+      message.connective_tissue().entry_pressure_pa()};
   return film;
 }
 
@@ -100,6 +137,66 @@ void read_time(const v1::TimeControl& message, simulation::SimulationSpec& spec)
   if (message.has_settle_skin_speed_mm_per_s()) {
     spec.settle_skin_speed = message.settle_skin_speed_mm_per_s() * kMetrePerMillimetre;
   }
+  if (message.has_error_tolerance_mm()) spec.error_tolerance = message.error_tolerance_mm() * kMetrePerMillimetre;
+}
+
+anatomy::FatPreset to_fat_preset(v1::FatPreset preset) {
+  switch (preset) {
+    case v1::COLEMAN:
+      return anatomy::FatPreset::kColeman;
+    case v1::NANOFAT:
+      return anatomy::FatPreset::kNanofat;
+    case v1::SVF_GEL:
+      return anatomy::FatPreset::kSvfGel;
+    default:
+      return anatomy::FatPreset::kNewtonian;
+  }
+}
+
+void read_fat(const v1::Fat& message, const FieldReader& reader, simulation::SimulationSpec& spec) {
+  const anatomy::FatFigures figures = anatomy::figures_of(to_fat_preset(message.preset()));
+  spec.fat_flow_index = message.has_flow_index() ? message.flow_index() : figures.flow_index;
+  spec.fat_viscosity = figures.consistency;
+  if (message.has_viscosity_pa_s()) spec.fat_viscosity = message.viscosity_pa_s();
+  if (message.has_consistency_pa_s_n()) spec.fat_viscosity = message.consistency_pa_s_n();
+  if (message.has_viscosity_pa_s() && spec.fat_flow_index != 1.0) {
+    reader.wrong("viscosity_pa_s", "is given, but with a flow index below 1 it is consistency_pa_s_n");
+  }
+  if (message.has_consistency_pa_s_n() && spec.fat_flow_index == 1.0) {
+    reader.wrong("consistency_pa_s_n", "is given, but with flow index 1 it is viscosity_pa_s");
+  }
+  const bool figures_are_of_another_law = !message.has_consistency_pa_s_n() && !message.has_viscosity_pa_s() &&
+                                          message.has_flow_index() && message.flow_index() != figures.flow_index;
+  if (figures_are_of_another_law) {
+    reader.wrong(message.flow_index() < 1.0 ? "consistency_pa_s_n" : "viscosity_pa_s",
+                 "is missing: that of the preset goes with its own flow index");
+  }
+  spec.fat_yield_stress = message.has_yield_stress_pa() ? message.yield_stress_pa() : figures.yield_stress;
+  if (figures.shear_modulus > 0.0) spec.fat_shear_modulus = figures.shear_modulus;
+  if (message.has_shear_modulus_pa()) spec.fat_shear_modulus = message.shear_modulus_pa();
+  spec.fat_density = message.has_density_kg_m3() ? message.density_kg_m3() : figures.density;
+}
+
+simulation::LigamentSpec read_ligament(const v1::Ligament& message, const FieldReader& reader) {
+  simulation::LigamentSpec ligament;
+  ligament.name = message.name();
+  if (message.name().empty()) reader.missing("name");
+  ligament.film = message.film();
+  ligament.inner_film = message.inner_film();
+  if (message.place_case() == v1::Ligament::kAnatomical) {
+    ligament.place = simulation::NamedLigament{message.anatomical()};
+  } else if (message.place_case() == v1::Ligament::kPoints) {
+    ligament.place = read_points(message.points(), reader.below("points"));
+    if (!message.has_stiffness_n_per_mm()) reader.missing("stiffness_n_per_mm");
+  } else {
+    reader.wrong("points", "are missing, and so is anatomical: one of them says where the ligament is");
+  }
+  if (message.has_stiffness_n_per_mm()) {
+    ligament.stiffness = message.stiffness_n_per_mm() * kNewtonPerMetrePerNewtonPerMillimetre;
+  }
+  ligament.slack = message.slack_mm() * kMetrePerMillimetre;
+  if (message.has_breaking_force_n()) ligament.breaking_force = message.breaking_force_n();
+  return ligament;
 }
 
 simulation::ProbeSpec read_probe(const v1::Probe& message, const FieldReader& reader) {
@@ -114,8 +211,8 @@ absl::StatusOr<simulation::SimulationSpec> to_simulation_spec(const v1::Simulati
   const FieldReader reader("", violations);
   simulation::SimulationSpec spec;
   if (message.model().empty()) reader.missing("model");
-  if (message.fat().has_viscosity_pa_s()) spec.fat_viscosity = message.fat().viscosity_pa_s();
-  if (message.fat().has_density_kg_m3()) spec.fat_density = message.fat().density_kg_m3();
+  read_fat(message.fat(), reader.below("fat"), spec);
+  if (message.has_suction_limit_pa()) spec.suction_limit = message.suction_limit_pa();
   for (int i = 0; i < message.films_size(); ++i) {
     spec.films.push_back(read_film(message.films(i), reader.below("films", i)));
   }
@@ -130,6 +227,9 @@ absl::StatusOr<simulation::SimulationSpec> to_simulation_spec(const v1::Simulati
   spec.damping_stiffness = message.damping().stiffness_s();
   for (int i = 0; i < message.probes_size(); ++i) {
     spec.probes.push_back(read_probe(message.probes(i), reader.below("probes", i)));
+  }
+  for (int i = 0; i < message.ligaments_size(); ++i) {
+    spec.ligaments.push_back(read_ligament(message.ligaments(i), reader.below("ligaments", i)));
   }
   if (!violations.empty()) return violations.to_status();
   return spec;

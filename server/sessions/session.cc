@@ -300,11 +300,13 @@ void Session::conclude() {
 
 void Session::update_view() {
   std::vector<simulation::ZoneReport> zones = simulation_->zone_reports();
+  std::vector<simulation::LigamentReport> ligaments = simulation_->ligament_reports();
   double wall_s = wall_before_s_;
   if (view_.state == SimulationState::kRunning) wall_s += seconds(Clock::now() - running_since_);
   const std::lock_guard lock(view_mutex_);
   view_.report = simulation_->report();
   view_.zones = std::move(zones);
+  view_.ligaments = std::move(ligaments);
   view_.wall_s = wall_s;
 }
 

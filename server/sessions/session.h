@@ -29,6 +29,7 @@ struct SessionView {
   std::string reason;
   simulation::StepReport report;
   std::vector<simulation::ZoneReport> zones;
+  std::vector<simulation::LigamentReport> ligaments;
   int n_hexahedra = 0;
   int n_film_cells = 0;
   int n_dofs = 0;

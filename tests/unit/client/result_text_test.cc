@@ -23,6 +23,13 @@ v1::Simulation sample() {
   summary->set_min_pressure_pa(-std::numeric_limits<double>::infinity());
   summary->set_state_hash("abc");
   summary->add_zones()->set_name("masseter");
+  summary->set_rejected_steps(3);
+  summary->set_undelivered_ml(-0.25);
+  v1::LigamentSummary* ligament = summary->add_ligaments();
+  ligament->set_name("zygomatic");
+  ligament->set_tension_n(1.5);
+  ligament->set_points(2);
+  ligament->set_broken_points(1);
   return simulation;
 }
 
@@ -30,11 +37,14 @@ TEST(SummaryJson, HasTheKeysOthersRelyOn) {
   const auto json = nlohmann::ordered_json::parse(summary_json("jaw_angle", sample()));
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, ElementsAre("plan", "state", "reason", "steps", "time_s", "wall_s", "step_ms_median", "hexahedra",
-                                "film_cells", "dofs", "injected_ml", "film_volume_ml", "gap_volume_ml",
-                                "film_volume_relative_error", "gap_volume_relative_error", "max_pressure_pa",
-                                "min_pressure_pa", "mean_pressure_pa", "max_thickness_mm", "skin_max_displacement_mm",
-                                "skin_volume_change_ml", "min_scaled_jacobian", "state_hash", "zones"));
+  EXPECT_THAT(
+      keys, ElementsAre("plan", "state", "reason", "steps", "time_s", "wall_s", "step_ms_median", "hexahedra",
+                        "film_cells", "dofs", "injected_ml", "film_volume_ml", "gap_volume_ml",
+                        "film_volume_relative_error", "gap_volume_relative_error", "max_pressure_pa", "min_pressure_pa",
+                        "mean_pressure_pa", "max_thickness_mm", "skin_max_displacement_mm", "skin_volume_change_ml",
+                        "min_scaled_jacobian", "state_hash", "zones", "rejected_steps", "error_estimate_mm",
+                        "settling_error_mm", "void_volume_ml", "undelivered_ml", "elastic_energy_mj",
+                        "kinetic_energy_mj", "injection_work_mj", "film_dissipation_mj", "closed_cells", "ligaments"));
   keys.clear();
   for (const auto& [key, value] : json["zones"][0].items()) keys.push_back(key);
   EXPECT_THAT(keys, ElementsAre("name", "volume_ml", "mean_pressure_pa", "max_thickness_mm"));
@@ -43,6 +53,8 @@ TEST(SummaryJson, HasTheKeysOthersRelyOn) {
   EXPECT_EQ(json["steps"], 120);
   EXPECT_EQ(json["injected_ml"], 4.5);
   EXPECT_TRUE(json["min_pressure_pa"].is_null());
+  EXPECT_TRUE(json["settling_error_mm"].is_null());
+  EXPECT_EQ(json["ligaments"][0]["broken_points"], 1);
 }
 
 TEST(SummaryText, IsForPeople) {
@@ -50,6 +62,9 @@ TEST(SummaryText, IsForPeople) {
   EXPECT_THAT(text, HasSubstr("jaw_angle: SETTLED (at rest)"));
   EXPECT_THAT(text, HasSubstr("4.500 mL injected"));
   EXPECT_THAT(text, HasSubstr("10.0 mmHg"));
+  EXPECT_THAT(text, HasSubstr("3 taken back"));
+  EXPECT_THAT(text, HasSubstr("0.250 mL less than planned"));
+  EXPECT_THAT(text, HasSubstr("1.50 N, walls 0.00 mm apart, 1 of 2 points broken"));
   EXPECT_THAT(text, HasSubstr("Research and planning aid, not a medical device."));
 }
 
@@ -68,8 +83,9 @@ TEST(SeriesCsv, NamesUnitsAndKeepsValues) {
       series_csv(spec, {row}),
       "step,time_s,step_ms,injected_ml,film_volume_ml,gap_volume_ml,max_pressure_pa,min_pressure_pa,max_thickness_mm,"
       "skin_max_displacement_mm,skin_speed_mm_per_s,probe_centre_thickness_mm,probe_centre_pressure_pa,"
-      "probe_edge_thickness_mm,probe_edge_pressure_pa,wall_ms\n"
-      "7,0.1,0,0.3333333333333333,0,0,0,0,0,0,0,0.25,12,,,9\n");
+      "probe_edge_thickness_mm,probe_edge_pressure_pa,wall_ms,rejected_steps,error_estimate_mm,void_volume_ml,"
+      "elastic_energy_mj,injection_work_mj,film_dissipation_mj,ligament_tension_n,broken_ligament_points,closed_cells\n"
+      "7,0.1,0,0.3333333333333333,0,0,0,0,0,0,0,0.25,12,,,9,0,0,0,0,0,0,0,0,0\n");
 }
 
 }  // namespace

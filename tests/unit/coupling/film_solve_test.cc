@@ -12,6 +12,7 @@ struct FlatFilm {
   film::FilmGrid grid;
   film::FilmMetric metric;
   film::FilmProjection projection;
+  film::Fat fat;
 
   explicit FlatFilm(int n)
       : grid(film::make_film_grid({0, 1, 0, 1}, n, n, std::vector<int>(n * n, 0))), projection(grid) {
@@ -27,8 +28,8 @@ struct FlatFilm {
     Eigen::VectorXd into = Eigen::VectorXd::Zero(grid.n_cells());
     into[source] = injected;
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(grid.n_edges());
-    projection.begin_step({&metric, {}, volume, into, still, still, dt});
-    return {Eigen::VectorXd::Zero(grid.n_cells()), volume, {still}, 0, false, 0.0};
+    projection.begin_step({&metric, fat, volume, into, still, still, dt, {}, {}, 0.0});
+    return {Eigen::VectorXd::Zero(grid.n_cells()), volume, {}, {still}, 0, false, 0.0};
   }
 };
 
@@ -39,7 +40,7 @@ TEST(FilmSolve, KeepsVolumeAndPositivityAtAnyStep) {
     const FilmSolveResult start = film.begin(0.05e-3, 40, injected, dt);
     WallCompliance walls;
     walls.diagonal = film.metric.area / 1e6;
-    const FilmSolveResult result = solve_films({&film.projection}, walls, start.volume, start);
+    const FilmSolveResult result = solve_films({&film.projection}, walls, start.volume, {}, start);
     EXPECT_TRUE(result.converged) << "dt " << dt << " change " << result.change;
     EXPECT_GT(result.volume.minCoeff(), 0.0);
     EXPECT_NEAR(result.volume.sum(), start.volume.sum() + injected, 1e-14 * result.volume.sum());
@@ -54,7 +55,7 @@ TEST(FilmSolve, FullComplianceSatisfiesTheCoupledEquation) {
   const FilmSolveResult start = film.begin(0.2e-3, 12, 1e-8, 0.01);
   WallCompliance walls;
   walls.full = &c;
-  const FilmSolveResult result = solve_films({&film.projection}, walls, start.volume, start);
+  const FilmSolveResult result = solve_films({&film.projection}, walls, start.volume, {}, start);
   ASSERT_TRUE(result.converged);
   EXPECT_LT((start.volume + c * result.pressure - result.volume).cwiseAbs().maxCoeff(),
             1e-12 * result.volume.maxCoeff());
@@ -65,7 +66,7 @@ TEST(FilmSolve, TakingMoreThanThereIsDoesNotConverge) {
   const FilmSolveResult start = film.begin(0.05e-3, 12, -1e-7, 0.01);
   WallCompliance walls;
   walls.diagonal = film.metric.area / 1e6;
-  EXPECT_FALSE(solve_films({&film.projection}, walls, start.volume, start).converged);
+  EXPECT_FALSE(solve_films({&film.projection}, walls, start.volume, {}, start).converged);
 }
 
 }  // namespace

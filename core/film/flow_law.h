@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/film/edge_operators.h"
+#include "core/film/film_grid.h"
+#include "core/film/film_metric.h"
+#include "core/film/rheology.h"
+
+namespace lipofill::film {
+
+/// Flux through every open edge, F(D), as a function of what drives the fat across it, D = rho b . dX - G p [Pa].
+///
+/// Newtonian fat, linear, with inertia (compute_conductance):              F = W(k) D
+/// Else a quadrant at a time, w the form of the conductance h^3/(12 K):     F = f(|grad|) w D + W(h^3/(12 G dt)) (D -
+/// s)
+///
+/// with f of compute_flow_factor at the quadrant's own gradient, |grad|^2 = D^T w D / (c h^3), c = sqrt(g)/(48 K), its
+/// thickness h = (h1^2 + h2^2)/(h1 + h2) of its two edges; the second term is the Maxwell element, one implicit step of
+/// rate = stress/viscous + d(stress)/dt/G, s the friction of the last step. F is the gradient of a convex function of
+/// D: its tangent is symmetric and positive semi-definite. Flow below the yield stress is zero, not small.
+///
+/// Checked by tests/unit/film/rheology_test.cc.
+class FlowLaw {
+ public:
+  explicit FlowLaw(const FilmGrid& grid) : grid_(&grid) {}
+
+  /// @param edge_thickness  h [m] (n_edges), 0: dry or closed
+  /// @param wall_stress     T = h s / 2 of the last step [Pa m] (n_edges), elastic fat only
+  void prepare(const FilmMetric& metric, const Fat& fat, const Eigen::VectorXd& edge_thickness,
+               const Eigen::VectorXd& wall_stress, double dt);
+
+  bool is_linear() const { return fat_.is_newtonian(); }
+  Eigen::VectorXd compute_flux(const Eigen::VectorXd& drive) const;
+  /// dF/dD as forms [m3/(Pa s)]. Where nothing flows it is kept just above zero, so that a pressure follows.
+  QuadrantForms linearise(const Eigen::VectorXd& drive) const;
+
+ private:
+  /// A quadrant's reference form, scale and thickness, for the flow factor.
+  struct Quadrant {
+    QuadrantForm form;
+    double gradient_scale = 0.0;  ///< 1/(c h^3)
+    double thickness = 0.0;
+  };
+  struct Response;
+  Response respond(const Quadrant& quadrant, double d1, double d2) const;
+
+  const FilmGrid* grid_;
+  Fat fat_;
+  QuadrantForms linear_;                            ///< Newtonian: W(k); else the elastic part
+  std::vector<std::array<Quadrant, 4>> quadrants_;  ///< empty: Newtonian
+  Eigen::VectorXd elastic_start_;                   ///< s [Pa], 0 without elasticity
+};
+
+}  // namespace lipofill::film

@@ -1,0 +1,163 @@
+// The films' side of a coupled step: what each brings into it, its walls, and what becomes of it.
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/film/advection.h"
+#include "core/film/edge_operators.h"
+#include "core/film/edge_thickness.h"
+#include "core/simulation/coupled_step.h"
+
+namespace lipofill::simulation {
+namespace {
+
+/// C has negative entries on curved layers; a lumped cell keeps at least this share of its own compliance, so that J +
+/// R stays definite.
+constexpr double kLeastLumpedShare = 1e-3;
+/// Fat thinner than this seeps through a leaky wall in proportion to its thickness, so that no cell is drained [m].
+constexpr double kLeakFullThickness = 0.01e-3;
+
+/// Fat enters the cells beside those whose pressure is above the entry pressure.
+void enter_cells_beside_pressure(const FilmLayout& layout, FilmState& film) {
+  if (film.is_entered.size() == 0) return;
+  const Eigen::VectorXd before = film.is_entered;
+  const auto presses = [&](int cell) {
+    return before[cell] > 0.0 && film.pressure[cell] > layout.connective_tissue.entry_pressure;
+  };
+  for (const film::Edge& edge : layout.grid.edges) {
+    if (presses(edge.left)) film.is_entered[edge.right] = 1.0;
+    if (presses(edge.right)) film.is_entered[edge.left] = 1.0;
+  }
+}
+
+}  // namespace
+
+film::FilmMetric CoupledStep::film_metric(const SimulationState& state, int film) const {
+  if (gap_of_film_[film] < 0) return rest_metric_[film];
+  return film::compute_film_metric(films_[film].grid, gaps_->film(gap_of_film_[film]).mid_surface(state.positions));
+}
+
+void CoupledStep::begin_film_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected,
+                                  double dt) {
+  metric_.resize(films_.size());
+  for (size_t f = 0; f < films_.size(); ++f) {
+    const FilmState& film = state.films[f];
+    const film::FilmGrid& grid = films_[f].grid;
+    metric_[f] = film_metric(state, static_cast<int>(f));
+    film::FilmStepInput input;
+    input.metric = &metric_[f];
+    input.fat = fat_;
+    input.fat.wall_friction = films_[f].wall_friction;
+    input.volume = film.volume;
+    input.injected = injected[f];
+    input.velocity =
+        input.fat.has_inertia() ? move_freely(f, film, input.fat, dt) : Eigen::VectorXd::Zero(grid.n_edges());
+    const Eigen::VectorXd height = (gravity_.transpose() * metric_[f].centre).transpose();
+    input.body_force = fat_.density * film::compute_edge_difference(grid, height);
+    input.dt = dt;
+    input.wall_stress = film.wall_stress;
+    input.is_closed.assign(film.is_entered.size(), 0);
+    for (Eigen::Index cell = 0; cell < film.is_entered.size(); ++cell)
+      input.is_closed[cell] = film.is_entered[cell] == 0.0;
+    input.leak_full_thickness = kLeakFullThickness;
+    projections_[f]->begin_step(std::move(input));
+  }
+}
+
+/// Viscosity and advection: the velocity that the pressure then corrects.
+Eigen::VectorXd CoupledStep::move_freely(size_t f, const FilmState& film, const film::Fat& fat, double dt) {
+  const film::FilmGrid& grid = films_[f].grid;
+  const Eigen::VectorXd h = film.volume.cwiseMax(0.0).cwiseQuotient(metric_[f].area);
+  const Eigen::VectorXd edge_h = film::compute_edge_thickness(grid, h, film.velocity);
+  const Eigen::VectorXd viscous = viscosity_[f].advance(grid, metric_[f], fat, h, edge_h, film.velocity, dt);
+  return film::advect_velocity(grid, metric_[f], viscous, dt);
+}
+
+/// The compliance of every cell's walls, in the order of all cells.
+coupling::WallCompliance CoupledStep::wall_compliance() {
+  coupling::WallCompliance walls;
+  walls.diagonal.setZero(cell_offset_.back());
+  for (size_t f = 0; f < films_.size(); ++f) {
+    if (films_[f].wall != FilmWallKind::kWinkler) continue;
+    walls.diagonal.segment(cell_offset_[f], films_[f].grid.n_cells()) = rest_area_[f] / films_[f].wall_stiffness;
+  }
+  if (cell_of_tissue_.empty()) return walls;
+  const Eigen::MatrixXd& c = factor_->compliance();
+  if (coupling_ == CouplingMode::kLumped) {
+    for (size_t k = 0; k < cell_of_tissue_.size(); ++k) {
+      walls.diagonal[cell_of_tissue_[k]] = std::max(c.row(k).sum(), kLeastLumpedShare * c(k, k));
+    }
+    return walls;
+  }
+  if (static_cast<int>(cell_of_tissue_.size()) == cell_offset_.back()) {
+    walls.full = &c;
+    return walls;
+  }
+  full_compliance_ = walls.diagonal.asDiagonal();
+  for (size_t b = 0; b < cell_of_tissue_.size(); ++b) {
+    for (size_t a = 0; a < cell_of_tissue_.size(); ++a)
+      full_compliance_(cell_of_tissue_[a], cell_of_tissue_[b]) = c(a, b);
+  }
+  walls.full = &full_compliance_;
+  return walls;
+}
+
+/// Rest + C p of the cells that have walls of their own, rest of the others.
+Eigen::VectorXd CoupledStep::gap_of_walls(const Eigen::VectorXd& pressure) const {
+  Eigen::VectorXd gap = rest_volume_;
+  for (size_t f = 0; f < films_.size(); ++f) {
+    if (films_[f].wall != FilmWallKind::kWinkler) continue;
+    const int n = films_[f].grid.n_cells();
+    gap.segment(cell_offset_[f], n) +=
+        pressure.segment(cell_offset_[f], n).cwiseProduct(rest_area_[f]) / films_[f].wall_stiffness;
+  }
+  return gap;
+}
+
+/// Empty when no film has a limit. Cells that fat has not entered are held together by tissue, and rigid walls keep
+/// whatever pressure there is.
+Eigen::VectorXd CoupledStep::lowest_pressure(const SimulationState& state) const {
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  if (-suction_limit_ == kNone) return {};
+  Eigen::VectorXd lowest = Eigen::VectorXd::Constant(cell_offset_.back(), -suction_limit_);
+  for (size_t f = 0; f < films_.size(); ++f) {
+    auto of_film = lowest.segment(cell_offset_[f], films_[f].grid.n_cells());
+    if (films_[f].wall == FilmWallKind::kRigid) of_film.setConstant(kNone);
+    const Eigen::VectorXd& entered = state.films[f].is_entered;
+    for (Eigen::Index cell = 0; cell < entered.size(); ++cell) {
+      if (entered[cell] == 0.0) of_film[cell] = kNone;
+    }
+  }
+  return lowest;
+}
+
+/// The cannula parts the tissue where it delivers.
+void CoupledStep::enter_injected_cells(const std::vector<Eigen::VectorXd>& injected, SimulationState& state) const {
+  for (size_t f = 0; f < films_.size(); ++f) {
+    Eigen::VectorXd& entered = state.films[f].is_entered;
+    for (Eigen::Index cell = 0; cell < entered.size(); ++cell) {
+      if (injected[f][cell] > 0.0) entered[cell] = 1.0;
+    }
+  }
+}
+
+void CoupledStep::finish_films(const SimulationState& from, double dt, const coupling::FilmSolveResult& solution,
+                               SimulationState& next) const {
+  for (size_t f = 0; f < films_.size(); ++f) {
+    const film::FilmGrid& grid = films_[f].grid;
+    const film::FilmProjection& projection = *projections_[f];
+    FilmState& film = next.films[f];
+    film.pressure = solution.pressure.segment(cell_offset_[f], grid.n_cells());
+    film.volume = solution.volume.segment(cell_offset_[f], grid.n_cells());
+    film.velocity = projection.compute_velocity(solution.flux[f]);
+    film.wall_stress = projection.compute_wall_stress(film.pressure);
+    film.volume_rate = (film.volume - from.films[f].volume) / dt;
+    const double injection_work = film.pressure.dot(projection.input().injected);
+    next.injection_work += injection_work;
+    next.film_dissipation += injection_work - film.pressure.dot(film.volume - from.films[f].volume);
+    enter_cells_beside_pressure(films_[f], film);
+  }
+}
+
+}  // namespace lipofill::simulation

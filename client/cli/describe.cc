@@ -48,6 +48,26 @@ std::string describe(const v1::Scan& scan) {
   return text;
 }
 
+std::string layers_text(const v1::ModelReport& report) {
+  std::string text;
+  for (const v1::LayerReport& layer : report.layers()) {
+    absl::StrAppendFormat(&text, "  %-14s %5.2f mm thick on average, %.2f to %.2f\n", layer.name(),
+                          layer.mean_thickness_mm(), layer.min_thickness_mm(), layer.max_thickness_mm());
+  }
+  if (report.has_bone()) {
+    const v1::BoneReport& bone = report.bone();
+    absl::StrAppendFormat(
+        &text, "  bone %.1f mm under the skin on average, %.1f to %.1f; met at %.0f %% of the nodes\n",
+        bone.mean_depth_mm(), bone.min_depth_mm(), bone.max_depth_mm(), 100.0 * bone.measured_share());
+    if (bone.limited_share() > 0.0) {
+      absl::StrAppendFormat(&text,
+                            "  at %.0f %% of the nodes the layer ends above the bone, at its greatest thickness\n",
+                            100.0 * bone.limited_share());
+    }
+  }
+  return text;
+}
+
 std::string describe(const v1::Model& model) {
   const v1::ModelReport& report = model.report();
   std::string text = absl::StrFormat(
@@ -59,6 +79,7 @@ std::string describe(const v1::Model& model) {
                           report.scan_vertices_in_patch(), report.max_chart_deviation_mm());
   }
   for (const std::string& remark : report.scan_remarks()) absl::StrAppend(&text, "  ", remark, "\n");
+  absl::StrAppend(&text, layers_text(report));
   return absl::StrCat(text, "  content   ", report.content_hash(), "\n");
 }
 

@@ -12,6 +12,9 @@ namespace lipofill::client {
 std::string describe(const v1::Patient& patient);
 std::string describe(const v1::Scan& scan);
 std::string describe(const v1::Model& model);
+
+/// Thickness of the layers, a line each, and what was found of the bone.
+std::string layers_text(const v1::ModelReport& report);
 std::string describe(const v1::Operation& operation);
 std::string describe(const v1::Evaluation& evaluation);
 std::string list_line(const v1::Patient& patient);

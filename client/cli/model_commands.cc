@@ -24,15 +24,17 @@ struct Options {
   std::string patient;
   std::string plan;
   std::string scan;
+  std::string bone;
   std::string out;
 };
 
-/// The plan's model; its scan is the one named, or is sent first.
+/// The plan's model; its scans of skin and bone are those named, or are sent first.
 absl::StatusOr<v1::ModelSpec> model_of_plan(const Connection& connection, const Options& options,
                                             const std::string& parent) {
   auto plan = load_plan(options.plan);
   if (!plan.ok()) return plan.status();
   if (auto status = load_plan_landmarks(&*plan); !status.ok()) return status;
+  if (auto status = check_bone_file(*plan); !status.ok()) return status;
   v1::ModelSpec spec = plan->plan.model();
   if (!options.scan.empty()) {
     spec.mutable_scan_region()->set_scan(options.scan);
@@ -40,6 +42,13 @@ absl::StatusOr<v1::ModelSpec> model_of_plan(const Connection& connection, const 
     const auto scan = upload_scan(connection, parent, *plan->scan_file, plan->plan.scan().unit());
     if (!scan.ok()) return scan.status();
     spec.mutable_scan_region()->set_scan(scan->name());
+  }
+  if (!options.bone.empty()) {
+    spec.mutable_scan_region()->set_bone_scan(options.bone);
+  } else if (plan->bone_file) {
+    const auto bone = upload_scan(connection, parent, *plan->bone_file, plan->plan.bone().unit());
+    if (!bone.ok()) return bone.status();
+    spec.mutable_scan_region()->set_bone_scan(bone->name());
   }
   return spec;
 }
@@ -115,6 +124,7 @@ void add_model_commands(CLI::App& root, Application& application) {
   command->add_option("patient", options->patient, "patients/ID, or the ID alone")->required();
   command->add_option("plan", options->plan, "PLAN.json")->required();
   command->add_option("--scan", options->scan, "a scan the daemon has, in place of the plan's file");
+  command->add_option("--bone", options->bone, "a scan of the bone the daemon has, in place of the plan's file");
   add_command(*group, application, "list", "List a patient's models", "  lipofill model list case-7\n",
               [&application, options] { return list(application, *options); })
       ->add_option("patient", options->patient, "patients/ID, or the ID alone")

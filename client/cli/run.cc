@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
 #include "client/cli/describe.h"
 #include "client/cli/listing.h"
 #include "client/cli/picture.h"
@@ -57,15 +58,20 @@ absl::Status Run::read_plan() {
   if (!plan.ok()) return plan.status();
   plan_ = *std::move(plan);
   if (!options_.scan.empty()) plan_.scan_file = options_.scan;
+  if (!options_.bone.empty()) plan_.bone_file = options_.bone;
   if (!options_.landmarks.empty()) {
     plan_.landmarks_file = options_.landmarks;
     plan_.plan.mutable_model()->mutable_scan_region()->clear_landmarks_mm();
     plan_.plan.mutable_model()->mutable_scan_region()->clear_axes();
   }
-  if (options_.unit) plan_.plan.mutable_scan()->set_unit(*options_.unit);
+  if (options_.unit) {
+    plan_.plan.mutable_scan()->set_unit(*options_.unit);
+    if (!options_.bone.empty()) plan_.plan.mutable_bone()->set_unit(*options_.unit);
+  }
   if (options_.interval_ms) plan_.plan.mutable_output()->set_interval_ms(*options_.interval_ms);
   if (plan_.plan.name().empty()) plan_.plan.set_name(plan_.path.stem().string());
   if (auto status = load_plan_landmarks(&plan_); !status.ok()) return status;
+  if (auto status = check_bone_file(plan_); !status.ok()) return status;
   model_spec_ = plan_.plan.model();
   record_.plan = plan_.plan.name();
   record_.up = up_of(model_spec_.scan_region());
@@ -100,16 +106,27 @@ absl::Status Run::prepare_patient() {
   return absl::OkStatus();
 }
 
-absl::Status Run::send_scan() {
-  if (!plan_.scan_file) return absl::OkStatus();
-  const auto scan = upload_scan(*connection_, patient_, *plan_.scan_file, plan_.plan.scan().unit(),
-                                [this](uint64_t sent, uint64_t size) {
-                                  progress_.show(absl::StrFormat("sending the scan: %d of %d bytes", sent, size));
-                                });
+absl::StatusOr<v1::Scan> Run::send_surface(const std::filesystem::path& file, v1::ScanUnit unit, const char* what) {
+  auto scan = upload_scan(*connection_, patient_, file, unit, [this, what](uint64_t sent, uint64_t size) {
+    progress_.show(absl::StrFormat("sending the %s: %d of %d bytes", what, sent, size));
+  });
   if (!scan.ok()) return scan.status();
-  model_spec_.mutable_scan_region()->set_scan(scan->name());
   progress_.finish(
-      absl::StrFormat("scan: %d vertices, %d triangles", scan->report().vertices(), scan->report().triangles()));
+      absl::StrFormat("%s: %d vertices, %d triangles", what, scan->report().vertices(), scan->report().triangles()));
+  return scan;
+}
+
+absl::Status Run::send_scan() {
+  if (plan_.scan_file) {
+    const auto scan = send_surface(*plan_.scan_file, plan_.plan.scan().unit(), "scan");
+    if (!scan.ok()) return scan.status();
+    model_spec_.mutable_scan_region()->set_scan(scan->name());
+  }
+  if (plan_.bone_file) {
+    const auto bone = send_surface(*plan_.bone_file, plan_.plan.bone().unit(), "bone");
+    if (!bone.ok()) return bone.status();
+    model_spec_.mutable_scan_region()->set_bone_scan(bone->name());
+  }
   return absl::OkStatus();
 }
 
@@ -126,6 +143,8 @@ absl::Status Run::build() {
   progress_.finish(absl::StrFormat("model: %d hexahedra over %.1f cm2, worst scaled Jacobian %.2f", report.hexahedra(),
                                    report.area_cm2(), report.min_scaled_jacobian()));
   for (const std::string& remark : report.scan_remarks()) progress_.note(absl::StrCat("  ", remark));
+  for (const auto line : absl::StrSplit(layers_text(report), '\n', absl::SkipEmpty()))
+    progress_.note(std::string(line));
   return absl::OkStatus();
 }
 

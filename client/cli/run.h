@@ -23,6 +23,7 @@ struct RunOptions {
   std::string out;
   std::string patient;    ///< on the daemon; empty: one is made
   std::string scan;       ///< in place of the plan's
+  std::string bone;       ///< in place of the plan's
   std::string landmarks;  ///< in place of the plan's
   std::optional<v1::ScanUnit> unit;
   std::optional<double> interval_ms;
@@ -46,6 +47,7 @@ class Run {
   absl::Status reach_daemon();
   absl::Status prepare_patient();
   absl::Status send_scan();
+  absl::StatusOr<v1::Scan> send_surface(const std::filesystem::path& file, v1::ScanUnit unit, const char* what);
   absl::Status build();
   absl::Status create_simulation();
   absl::Status simulate();

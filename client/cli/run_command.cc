@@ -34,9 +34,10 @@ void add_run_command(CLI::App& root, Application& application) {
       ->excludes(command->get_option("--server"));
   command->add_option("--patient", options->patient, "a patient the daemon has; default: a new one");
   command->add_option("--scan", options->scan, "surface in place of the plan's");
+  command->add_option("--bone", options->bone, "surface of the bone in place of the plan's, in the frame of the scan");
   command->add_option("--landmarks", options->landmarks,
                       "landmarks in place of the plan's; FILE.json or FILE.json#object");
-  command->add_option("--unit", options->unit, "unit of the scan: mm, cm or m")
+  command->add_option("--unit", options->unit, "unit of the scan, and of what --bone names: mm, cm or m")
       ->transform(CLI::CheckedTransformer(kUnitNames));
   command
       ->add_option("--interval-ms", options->interval_ms,

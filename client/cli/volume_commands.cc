@@ -28,7 +28,10 @@ constexpr char kExtractDescription[] =
     "up [0,0,1], forward [0,-1,0].\n"
     "In a head CT the skin at -300 HU opens into the airways and sinuses; the largest connected piece, which is kept, "
     "has their "
-    "walls too. The model builder takes what is seen from outside.";
+    "walls too. The model builder takes what is seen from outside.\n"
+    "The bone is extracted the same way, at +250 HU, with --all: jaw and skull are separate pieces. As a plan's bone "
+    "it "
+    "says how deep the tissue is.";
 
 absl::StatusOr<ExitCode> extract(const Application& application, const Options& options) {
   const auto skin = extract_skin(options.volume, options.out, options.extraction);
@@ -81,13 +84,14 @@ void add_volume_commands(CLI::App& scan, Application& application) {
   CLI::App* command =
       add_local_command(scan, application, "extract", kExtractDescription,
                         "  lipofill scan extract head.mha --isovalue -300 --out skin.ply\n"
+                        "  lipofill scan extract head.mha --isovalue 250 --all --out bone.ply\n"
                         "  lipofill scan extract head.nii.gz --out skin.stl --smooth 20 --triangles 200000\n",
                         [&application, options] { return extract(application, *options); });
   command->add_option("volume", options->volume, ".mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz")->required();
   command->add_option("--out", options->out, ".obj, .ply or .stl")->required();
   command
       ->add_option("--isovalue", options->extraction.isovalue,
-                   "in the volume's values; -300 (the default) is the skin in HU")
+                   "in the volume's values; -300 (the default) is the skin in HU, 250 the bone")
       ->capture_default_str();
   command->add_flag("--all", options->extraction.all_components,
                     "keep every piece, not only the largest connected one");

@@ -1,5 +1,7 @@
 #include "client/cpp/plan_file.h"
 
+#include <vector>
+
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "client/cpp/errors.h"
@@ -15,8 +17,21 @@ absl::StatusOr<PlanFile> load_plan(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.parent_path();
   const v1::ScanFile& scan = file.plan.scan();
   if (!scan.file().empty()) file.scan_file = folder / scan.file();
+  if (!file.plan.bone().file().empty()) file.bone_file = folder / file.plan.bone().file();
   if (!scan.landmarks_file().empty()) file.landmarks_file = (folder / scan.landmarks_file()).string();
   return file;
+}
+
+absl::Status check_bone_file(const PlanFile& plan) {
+  std::vector<FieldViolation> problems;
+  if (!plan.plan.bone().landmarks_file().empty()) {
+    problems.push_back({"bone.landmarks_file", "is given, but landmarks are those of the scan"});
+  }
+  if (plan.bone_file && !plan.plan.model().has_scan_region()) {
+    problems.push_back({"bone.file", "is given, but model.scan_region is not"});
+  }
+  if (problems.empty()) return absl::OkStatus();
+  return invalid_fields(absl::StrCat(plan.path.string(), ": a bone that cannot be used"), problems);
 }
 
 std::string display_name_of(const std::string& plan_name) {

@@ -14,6 +14,7 @@ struct PlanFile {
   std::filesystem::path path;
   v1::Plan plan;
   std::optional<std::filesystem::path> scan_file;
+  std::optional<std::filesystem::path> bone_file;
   std::optional<std::string> landmarks_file;  ///< may end in #object
 };
 
@@ -21,6 +22,9 @@ struct PlanFile {
 /// against the schema; what they mean is checked by the daemon. INVALID_ARGUMENT naming the file, and as violations
 /// each unknown field by its path, with the nearest known name. Checked by tests/unit/client/plan_file_test.cc.
 absl::StatusOr<PlanFile> load_plan(const std::filesystem::path& path);
+
+/// INVALID_ARGUMENT for a bone file in a plan that has no scan region, or with landmarks of its own.
+absl::Status check_bone_file(const PlanFile& plan);
 
 /// A plan's name as the daemon takes it for dashboards: at most 63 characters of [a-z0-9-].
 std::string display_name_of(const std::string& plan_name);

@@ -8,6 +8,7 @@
 #include "server/rpc/request_key.h"
 #include "server/rpc/scan_reading.h"
 #include "server/rpc/timestamps.h"
+#include "server/rpc/tissue_figures.h"
 #include "server/rpc/unary.h"
 #include "server/rpc/violation_prefix.h"
 #include "server/sessions/identifiers.h"
@@ -20,15 +21,46 @@ namespace {
 /// Reading the scan is the first part of the work.
 constexpr double kScanFraction = 0.05;
 
-absl::StatusOr<std::string> scan_of(const std::string& patient, const v1::ModelSpec& spec) {
-  if (!spec.has_scan_region()) return std::string();
-  const auto scan = parse_scan_name(spec.scan_region().scan(), "scan_region.scan");
+/// The scans a specification names: ids, empty where it names none.
+struct ScanIds {
+  std::string skin;
+  std::string bone;
+};
+
+absl::StatusOr<std::string> scan_of(const std::string& patient, const std::string& name, const std::string& field) {
+  const auto scan = parse_scan_name(name, field);
   if (!scan.ok()) return scan.status();
   if (scan->patient != patient) {
-    return field_violation("scan_region.scan", absl::StrCat("is ", spec.scan_region().scan(), ", must be a scan of ",
-                                                            patient_name(patient)));
+    return field_violation(field, absl::StrCat("is ", name, ", must be a scan of ", patient_name(patient)));
   }
   return scan->id;
+}
+
+absl::StatusOr<ScanIds> scans_of(const std::string& patient, const v1::ModelSpec& spec) {
+  ScanIds ids;
+  if (!spec.has_scan_region()) return ids;
+  FieldViolations violations;
+  const auto skin = scan_of(patient, spec.scan_region().scan(), "scan_region.scan");
+  violations.absorb("", skin.status());
+  if (skin.ok()) ids.skin = *skin;
+  if (!spec.scan_region().bone_scan().empty()) {
+    const auto bone = scan_of(patient, spec.scan_region().bone_scan(), "scan_region.bone_scan");
+    violations.absorb("", bone.status());
+    if (bone.ok()) ids.bone = *bone;
+  }
+  if (!violations.empty()) return violations.to_status();
+  return ids;
+}
+
+absl::Status check_complete(Backend& backend, const std::string& patient, const std::string& scan, const char* field) {
+  if (scan.empty()) return absl::OkStatus();
+  const auto record = backend.store.get_scan(patient, scan);
+  if (!record.ok()) return record.status();
+  if (record->complete) return absl::OkStatus();
+  return field_violation(field,
+                         absl::StrCat("is ", scan_name(patient, scan), ", which is not complete: ",
+                                      record->received_bytes, " of ", record->size_bytes, " bytes are here"),
+                         absl::StatusCode::kFailedPrecondition);
 }
 
 /// What is wrong with a specification without building anything, fields below "spec".
@@ -36,19 +68,12 @@ absl::Status check_spec(Backend& backend, const std::string& patient, const v1::
   FieldViolations violations;
   if (!request.has_spec()) return field_violation("spec", "is missing");
   violations.absorb("spec", to_face_model_spec(request.spec()).status());
-  const auto scan = scan_of(patient, request.spec());
-  violations.absorb("spec", scan.status());
+  const auto scans = scans_of(patient, request.spec());
+  violations.absorb("spec", scans.status());
   if (!violations.empty()) return violations.to_status();
-  if (scan->empty()) return absl::OkStatus();
-  const auto record = backend.store.get_scan(patient, *scan);
-  if (!record.ok()) return record.status();
-  if (!record->complete) {
-    return field_violation("spec.scan_region.scan",
-                           absl::StrCat("is ", request.spec().scan_region().scan(), ", which is not complete: ",
-                                        record->received_bytes, " of ", record->size_bytes, " bytes are here"),
-                           absl::StatusCode::kFailedPrecondition);
-  }
-  return absl::OkStatus();
+  const absl::Status skin = check_complete(backend, patient, scans->skin, "spec.scan_region.scan");
+  if (!skin.ok()) return skin;
+  return check_complete(backend, patient, scans->bone, "spec.scan_region.bone_scan");
 }
 
 absl::StatusOr<ModelCache::Model> build(Backend& backend, const std::string& operation, const std::string& patient,
@@ -77,14 +102,15 @@ absl::StatusOr<std::string> build_and_keep(Backend& backend, const std::string& 
                                            const v1::ModelSpec& message, const RequestKey& request) {
   const auto model = build(backend, operation, patient, message);
   if (!model.ok()) return model.status();
-  const auto scan = scan_of(patient, message);
-  if (!scan.ok()) return scan.status();
+  const auto scans = scans_of(patient, message);
+  if (!scans.ok()) return scans.status();
   ModelRecord record;
   record.patient = patient;
   record.id = make_id('m');
-  record.scan = *scan;
+  record.scan = scans->skin;
+  record.bone_scan = scans->bone;
   record.content_hash = (*model)->content_hash;
-  record.spec_message = message.SerializeAsString();
+  record.spec_message = fill_tissue_figures(message).SerializeAsString();
   record.report_message = to_model_report(**model).SerializeAsString();
   record.create_time_us = now_us();
   const auto kept = backend.store.create_model(record, request);
@@ -137,12 +163,16 @@ absl::StatusOr<simulation::FaceModelSpec> read_model_spec(Backend& backend, cons
                                                           const v1::ModelSpec& message) {
   auto spec = to_face_model_spec(message);
   if (!spec.ok()) return spec.status();
-  const auto scan = scan_of(patient, message);
-  if (!scan.ok()) return scan.status();
-  if (scan->empty()) return spec;
-  auto surface = read_scan_surface(backend, patient, *scan);
+  const auto scans = scans_of(patient, message);
+  if (!scans.ok()) return scans.status();
+  if (scans->skin.empty()) return spec;
+  auto surface = read_scan_surface(backend, patient, scans->skin);
   if (!surface.ok()) return surface.status();
   std::get<geometry::ScanRegionSpec>(spec->region).scan = *std::move(surface);
+  if (scans->bone.empty()) return spec;
+  auto bone = read_scan_surface(backend, patient, scans->bone);
+  if (!bone.ok()) return bone.status();
+  spec->bone = *std::move(bone);
   return spec;
 }
 

@@ -12,7 +12,7 @@ namespace lipofill::server {
 
 v1::Model to_model(const ModelRecord& record);
 
-/// A specification in SI, with its scan's surface read. Field violations relative to the message.
+/// A specification in SI, with the surfaces of its scans read. Field violations relative to the message.
 absl::StatusOr<simulation::FaceModelSpec> read_model_spec(Backend& backend, const std::string& patient,
                                                           const v1::ModelSpec& message);
 

@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/rpc/chart_conversion.h"
+#include "server/rpc/tissue_figures.h"
 
 namespace lipofill::server {
 namespace {
@@ -50,26 +51,55 @@ simulation::Support read_support(const v1::Support& message, const FieldReader& 
   return support;
 }
 
-simulation::TissueLayerSpec read_layer(const v1::TissueLayer& message, const FieldReader& reader) {
+simulation::DownToBone read_down_to_bone(const v1::DownToBone& message) {
+  simulation::DownToBone bounds;
+  if (message.has_min_thickness_mm()) bounds.min_thickness = message.min_thickness_mm() * kMetrePerMillimetre;
+  if (message.has_max_thickness_mm()) bounds.max_thickness = message.max_thickness_mm() * kMetrePerMillimetre;
+  return bounds;
+}
+
+void read_thickness(const v1::TissueLayer& message, const std::string& if_missing, const FieldReader& reader,
+                    simulation::TissueLayerSpec& layer) {
+  layer.regional_thickness = message.regional_thickness();
+  if (message.has_down_to_bone()) {
+    layer.down_to_bone = read_down_to_bone(message.down_to_bone());
+    if (message.has_thickness_mm())
+      reader.wrong("thickness_mm", "is given, and so is down_to_bone: one of them at most");
+  } else if (message.has_thickness_mm()) {
+    layer.geometry.thickness =
+        read_scalar_field(message.thickness_mm(), kMetrePerMillimetre, reader.below("thickness_mm"));
+  } else {
+    reader.wrong("thickness_mm", if_missing);
+  }
+}
+
+/// A layer whose figures the preset has filled in, as far as it can.
+simulation::TissueLayerSpec read_layer(const v1::TissueLayer& message, const std::string& if_missing,
+                                       const FieldReader& reader) {
   simulation::TissueLayerSpec layer;
   layer.name = message.name();
   if (message.name().empty()) reader.missing("name");
-  layer.geometry.thickness =
-      read_scalar_field(message.thickness_mm(), kMetrePerMillimetre, reader.below("thickness_mm"));
+  layer.kind = kind_of(message);
+  read_thickness(message, if_missing, reader, layer);
   if (message.has_elements_through()) {
     layer.geometry.elements_through = reader.required_count(true, message.elements_through(), "elements_through");
   }
-  layer.material.youngs_modulus = reader.required(message.has_youngs_modulus_kpa(), message.youngs_modulus_kpa(),
-                                                  kPascalPerKilopascal, "youngs_modulus_kpa");
-  layer.material.poisson_ratio =
-      reader.required(message.has_poisson_ratio(), message.poisson_ratio(), 1.0, "poisson_ratio");
-  layer.material.density = reader.required(message.has_density_kg_m3(), message.density_kg_m3(), 1.0, "density_kg_m3");
+  const auto figure = [&](bool has, double value, double factor, const char* field) {
+    if (!has) reader.wrong(field, if_missing);
+    return value * factor;
+  };
+  layer.material.youngs_modulus = figure(message.has_youngs_modulus_kpa(), message.youngs_modulus_kpa(),
+                                         kPascalPerKilopascal, "youngs_modulus_kpa");
+  layer.material.poisson_ratio = figure(message.has_poisson_ratio(), message.poisson_ratio(), 1.0, "poisson_ratio");
+  layer.material.density = figure(message.has_density_kg_m3(), message.density_kg_m3(), 1.0, "density_kg_m3");
+  layer.material.prestress = message.prestress_kpa() * kPascalPerKilopascal;
   return layer;
 }
 
 }  // namespace
 
-absl::StatusOr<simulation::FaceModelSpec> to_face_model_spec(const v1::ModelSpec& message) {
+absl::StatusOr<simulation::FaceModelSpec> to_face_model_spec(const v1::ModelSpec& given) {
+  const v1::ModelSpec message = fill_tissue_figures(given);
   FieldViolations violations;
   const FieldReader reader("", violations);
   simulation::FaceModelSpec spec;
@@ -87,7 +117,8 @@ absl::StatusOr<simulation::FaceModelSpec> to_face_model_spec(const v1::ModelSpec
   spec.n_xi = reader.required_count(message.has_n_xi(), message.n_xi(), "n_xi");
   spec.n_eta = reader.required_count(message.has_n_eta(), message.n_eta(), "n_eta");
   for (int i = 0; i < message.layers_size(); ++i) {
-    spec.layers.push_back(read_layer(message.layers(i), reader.below("layers", i)));
+    const v1::TissueLayer& layer = message.layers(i);
+    spec.layers.push_back(read_layer(layer, describe_missing_figure(message, layer), reader.below("layers", i)));
   }
   spec.rim = read_support(message.rim(), reader.below("rim"));
   spec.base = read_support(message.base(), reader.below("base"));

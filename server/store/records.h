@@ -37,6 +37,7 @@ struct ModelRecord {
   std::string spec_message;
   std::string report_message;
   int64_t create_time_us = 0;
+  std::string bone_scan;  ///< id of the scan of the bone it was built from, empty without one
 };
 
 enum class SimulationState { kReady = 1, kRunning, kPaused, kSettled, kFinished, kStopped, kFailed };

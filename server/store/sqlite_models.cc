@@ -4,10 +4,10 @@
 namespace lipofill::server {
 namespace {
 
-#define MODEL_COLUMNS "patient, id, scan, content_hash, spec, report, create_time_us"
+#define MODEL_COLUMNS "patient, id, scan, content_hash, spec, report, create_time_us, bone_scan"
 
 ModelRecord model_of(const Query& row) {
-  return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.text(5), row.integer(6)};
+  return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.text(5), row.integer(6), row.text(7)};
 }
 
 absl::Status no_model(const std::string& patient, const std::string& id) {
@@ -24,13 +24,14 @@ absl::StatusOr<ModelRecord> SqliteStore::create_model(const ModelRecord& model, 
   if (!made.ok()) return made.status();
   if (made->has_value()) return read_model(model.patient, (**made).substr(model_name(model.patient, "").size()));
   if (const auto patient = read_patient(model.patient); !patient.ok()) return patient.status();
-  if (!model.scan.empty()) {
-    if (const auto scan = read_scan(model.patient, model.scan); !scan.ok()) return scan.status();
+  for (const std::string& id : {model.scan, model.bone_scan}) {
+    if (id.empty()) continue;
+    if (const auto scan = read_scan(model.patient, id); !scan.ok()) return scan.status();
   }
-  Query insert(*database_, "INSERT INTO models (" MODEL_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?)");
+  Query insert(*database_, "INSERT INTO models (" MODEL_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
   absl::Status done = insert
                           .bind(model.patient, model.id, model.scan, model.content_hash, model.spec_message,
-                                model.report_message, model.create_time_us)
+                                model.report_message, model.create_time_us, model.bone_scan)
                           .run();
   done.Update(write_request(request, model_name(model.patient, model.id)));
   if (done.ok()) done.Update(transaction.commit());

@@ -91,8 +91,9 @@ absl::Status SqliteStore::delete_scan(const std::string& patient, const std::str
   const std::lock_guard lock(mutex_);
   Transaction transaction(*database_);
   if (!transaction.status().ok()) return transaction.status();
-  Query count(*database_, "SELECT id FROM models WHERE patient = ? AND scan = ? ORDER BY id LIMIT 1");
-  if (count.bind(patient, id).next()) {
+  Query count(*database_,
+              "SELECT id FROM models WHERE patient = ? AND (scan = ? OR bone_scan = ?) ORDER BY id LIMIT 1");
+  if (count.bind(patient, id, id).next()) {
     return absl::FailedPreconditionError(
         absl::StrCat(model_name(patient, count.text(0)), " was built from ", scan_name(patient, id)));
   }

@@ -5,7 +5,7 @@
 namespace lipofill::server {
 namespace {
 
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;
 constexpr int kApplicationId = 0x4c69706f;  // "Lipo"
 
 /// Ids are compared as bytes; requests hold the full name of what they made.
@@ -22,7 +22,7 @@ CREATE TABLE scans (
 CREATE TABLE models (
   patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, scan BLOB NOT NULL,
   content_hash BLOB NOT NULL, spec BLOB NOT NULL, report BLOB NOT NULL, create_time_us INTEGER NOT NULL,
-  PRIMARY KEY (patient, id));
+  bone_scan BLOB NOT NULL DEFAULT x'', PRIMARY KEY (patient, id));
 CREATE TABLE simulations (
   id BLOB PRIMARY KEY, model BLOB NOT NULL, display_name BLOB NOT NULL, spec BLOB NOT NULL, state INTEGER NOT NULL,
   reason BLOB NOT NULL, summary BLOB NOT NULL, create_time_us INTEGER NOT NULL);
@@ -37,6 +37,9 @@ CREATE TABLE requests (
 CREATE INDEX requests_by_name ON requests(name);
 )";
 
+/// What a database of schema version 1 lacks.
+constexpr char kFromVersion1[] = "ALTER TABLE models ADD COLUMN bone_scan BLOB NOT NULL DEFAULT x''";
+
 absl::StatusOr<int64_t> read_pragma(Database& database, const char* sql) {
   Query query(database, sql);
   const int64_t value = query.next() ? query.integer(0) : 0;
@@ -44,10 +47,11 @@ absl::StatusOr<int64_t> read_pragma(Database& database, const char* sql) {
   return value;
 }
 
-absl::Status create_schema(Database& database) {
+/// Changes the schema and marks the database as of this version, or does neither.
+absl::Status change_schema(Database& database, const char* statements) {
   Transaction transaction(database);
   if (!transaction.status().ok()) return transaction.status();
-  if (auto made = database.execute(kSchema); !made.ok()) return made;
+  if (auto made = database.execute(statements); !made.ok()) return made;
   const std::string marks =
       absl::StrCat("PRAGMA application_id = ", kApplicationId, "; PRAGMA user_version = ", kSchemaVersion);
   if (auto marked = database.execute(marks.c_str()); !marked.ok()) return marked;
@@ -59,12 +63,13 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   if (!version.ok()) return absl::Status(version.status().code(), absl::StrCat(path, ": ", version.status().message()));
   const auto tables = read_pragma(database, "SELECT count(*) FROM sqlite_master");
   if (!tables.ok()) return tables.status();
-  if (*version == 0 && *tables == 0) return create_schema(database);
+  if (*version == 0 && *tables == 0) return change_schema(database, kSchema);
   const auto application = read_pragma(database, "PRAGMA application_id");
   if (!application.ok()) return application.status();
   if (*application != kApplicationId) {
     return absl::FailedPreconditionError(absl::StrCat(path, " is a database of another program"));
   }
+  if (*version == 1) return change_schema(database, kFromVersion1);
   if (*version != kSchemaVersion) {
     return absl::FailedPreconditionError(
         absl::StrCat(path, " has schema version ", *version, ", this program knows ", kSchemaVersion));

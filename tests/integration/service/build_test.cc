@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "absl/strings/str_format.h"
 #include "tests/integration/service/service_fixture.h"
 
 namespace lipofill::testing {
@@ -141,6 +142,52 @@ TEST_F(BuildTest, BuildsOnAScanAndMeasuresItsSkin) {
   EXPECT_EQ(static_cast<uint32_t>(evaluation.vertices_size()), model.report().scan_vertices_in_patch());
   EXPECT_NEAR(evaluation.before_to_target().max_mm(), 0.0, 1e-6) << "the target is the scan itself";
   EXPECT_GT(evaluation.simulated_to_target().max_mm(), 0.5 * simulation.summary().skin_max_displacement_mm());
+}
+
+TEST_F(BuildTest, MeasuresTheWayDownToTheBoneAndKeepsIt) {
+  v1::Scan skin, bone;
+  ASSERT_TRUE(upload("patients/anna", v1::OBJ, sheet_obj(60), skin).ok());
+  // The same sheet without height is a plane up to 5 mm under it.
+  ASSERT_TRUE(upload("patients/anna", v1::OBJ, sheet_obj(20, 0.0), bone).ok());
+  v1::ModelSpec spec = parse_text<v1::ModelSpec>(R"(
+    n_xi: 10 n_eta: 10 tissue_preset: ELASTOGRAPHY
+    layers { name: "skin" thickness_mm { constant: 0.5 } } layers { name: "muscle" down_to_bone { min_thickness_mm: 0.5 } }
+    scan_region { axes { left { x: 1 y: 0 z: 0 } up { x: 0 y: 1 z: 0 } forward { x: 0 y: 0 z: 1 } } })");
+  spec.mutable_scan_region()->set_scan(skin.name());
+  spec.mutable_scan_region()->set_bone_scan(bone.name());
+  for (const auto& [x, y] : std::vector<std::pair<double, double>>{{25, 25}, {75, 25}, {75, 75}, {25, 75}}) {
+    *spec.mutable_scan_region()->add_corners()->mutable_position_mm() =
+        parse_text<v1::Vector3>(absl::StrFormat("x: %g y: %g z: 4.5", x, y));
+  }
+  v1::Operation operation;
+  const grpc::Status built = build("patients/anna", spec, operation);
+  ASSERT_TRUE(built.ok()) << built.error_message();
+  v1::Model model;
+  ASSERT_TRUE(operation.response().UnpackTo(&model)) << operation.error().message();
+  const v1::ModelReport& report = model.report();
+  EXPECT_EQ(report.bone().measured_share(), 1.0);
+  ASSERT_EQ(report.layers_size(), 2);
+  EXPECT_NEAR(report.layers(1).mean_thickness_mm(), report.bone().mean_depth_mm() - 0.5, 1e-9);
+  EXPECT_LT(report.bone().max_depth_mm(), 5.05);
+  EXPECT_EQ(model.spec().layers(1).youngs_modulus_kpa(), 20.0) << "the preset shows";
+  EXPECT_EQ(model.spec().layers(0).poisson_ratio(), 0.48);
+
+  v1::DeleteScanRequest remove;
+  remove.set_name(bone.name());
+  google::protobuf::Empty nothing;
+  EXPECT_EQ(call(*patients_, &Patients::DeleteScan, remove, nothing).error_code(),
+            grpc::StatusCode::FAILED_PRECONDITION);
+  restart();
+  v1::Simulation simulation;
+  v1::SimulationSpec plan = square_plan(model.name(), 0.02);
+  EXPECT_TRUE(create_simulation(plan, "x", true, simulation).ok()) << "the model is built again from both scans";
+  EXPECT_EQ(await_end("simulations/x").state(), v1::Simulation::FINISHED);
+
+  spec.mutable_layers(1)->mutable_down_to_bone()->set_min_thickness_mm(4.9);
+  ASSERT_TRUE(build("patients/anna", spec, operation).ok());
+  EXPECT_EQ(violations_of(operation.error()).count("spec.layers[1].down_to_bone"), 1u) << operation.error().message();
+  spec.mutable_scan_region()->set_bone_scan("patients/berta/scans/b");
+  EXPECT_EQ(violations_of(build("patients/anna", spec, operation)).count("spec.scan_region.bone_scan"), 1u);
 }
 
 TEST_F(BuildTest, IsIdempotentAlsoAfterARestart) {

@@ -34,6 +34,25 @@ TEST_F(PlanFileTest, ReadsBothSpellingsAndNamesFilesBesideThePlan) {
   EXPECT_EQ(*plan->landmarks_file, (folder_ / "faces/a.json#before").string());
 }
 
+TEST_F(PlanFileTest, NamesABoneBesideThePlan) {
+  const auto plan = load_plan(write("plan.json", R"({"model": {"scan_region": {}},
+    "scan": {"file": "skin.ply"}, "bone": {"file": "faces/bone.ply", "unit": "METRE"}})"));
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  EXPECT_EQ(*plan->bone_file, folder_ / "faces/bone.ply");
+  EXPECT_EQ(plan->plan.bone().unit(), v1::METRE);
+  EXPECT_TRUE(check_bone_file(*plan).ok());
+}
+
+TEST_F(PlanFileTest, RefusesABoneWithoutASkinOrWithLandmarks) {
+  const auto plan = load_plan(write("plan.json", R"({"model": {"square": {}},
+    "bone": {"file": "bone.ply", "landmarks_file": "bone.json"}})"));
+  ASSERT_TRUE(plan.ok()) << plan.status();
+  const auto violations = error_details_of(check_bone_file(*plan)).violations;
+  ASSERT_EQ(violations.size(), 2u);
+  EXPECT_EQ(violations[0].field, "bone.landmarks_file");
+  EXPECT_EQ(violations[1].field, "bone.file");
+}
+
 TEST_F(PlanFileTest, NamesEveryUnknownFieldWithItsPathAndTheNearestName) {
   const auto plan =
       load_plan(write("plan.json", R"({"simulation": {"injections": [{"zone": "a"}, {"volume": 3}], "viscosity": 2},
@@ -45,7 +64,8 @@ TEST_F(PlanFileTest, NamesEveryUnknownFieldWithItsPathAndTheNearestName) {
   EXPECT_THAT(violations[1].description, HasSubstr("did you mean volume_ml?"));
   EXPECT_EQ(violations[2].field, "simulation.viscosity");
   EXPECT_EQ(violations[3].field, "zzz");
-  EXPECT_THAT(violations[3].description, HasSubstr("Plan has name, description, scan, model, simulation, output"));
+  EXPECT_THAT(violations[3].description,
+              HasSubstr("Plan has name, description, scan, model, simulation, output, bone"));
   EXPECT_THAT(violations[3].description, HasSubstr("plan.json"));
 }
 

@@ -70,5 +70,26 @@ TEST(ReportConversion, MeasuresTheTissueOfASkewedGrid) {
   EXPECT_NEAR(to_model_report(model).tissue_volume_ml(), 0.6, 1e-12) << "a shear keeps volume";
 }
 
+TEST(ReportConversion, TellsTheThicknessOfLayersAndWhatWasFoundOfTheBone) {
+  simulation::FaceModel model;
+  model.geometry.grid.nodes = Eigen::Matrix3Xd::Zero(3, 1);
+  EXPECT_FALSE(to_model_report(model).has_bone());
+  model.layers.resize(1);
+  model.layers[0].name = "muscle";
+  model.thickness = {{2e-3, 5e-3, 9e-3}};
+  model.bone = simulation::BoneFinding{0.9, 0.25, {8e-3, 12e-3, 20e-3}};
+  const v1::ModelReport report = to_model_report(model);
+  ASSERT_EQ(report.layers_size(), 1);
+  EXPECT_EQ(report.layers(0).name(), "muscle");
+  EXPECT_DOUBLE_EQ(report.layers(0).min_thickness_mm(), 2.0);
+  EXPECT_DOUBLE_EQ(report.layers(0).mean_thickness_mm(), 5.0);
+  EXPECT_DOUBLE_EQ(report.layers(0).max_thickness_mm(), 9.0);
+  EXPECT_EQ(report.bone().measured_share(), 0.9);
+  EXPECT_EQ(report.bone().limited_share(), 0.25);
+  EXPECT_DOUBLE_EQ(report.bone().min_depth_mm(), 8.0);
+  EXPECT_DOUBLE_EQ(report.bone().mean_depth_mm(), 12.0);
+  EXPECT_DOUBLE_EQ(report.bone().max_depth_mm(), 20.0);
+}
+
 }  // namespace
 }  // namespace lipofill::server

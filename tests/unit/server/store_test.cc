@@ -139,6 +139,38 @@ TEST_F(StoreTest, HoldsOnToAScanThatAModelWasBuiltFrom) {
   EXPECT_TRUE(store_->delete_patient("anna", false).ok());
 }
 
+TEST_F(StoreTest, HoldsOnToTheBoneOfAModelToo) {
+  add_patient("anna");
+  ASSERT_TRUE(store_->create_scan(scan("s1"), {}).ok());
+  ASSERT_TRUE(store_->create_scan(scan("b1"), {}).ok());
+  ASSERT_TRUE(store_->create_model({"anna", "m1", "s1", "hash", "spec", "report", 1, "b1"}, {}).ok());
+  reopen();
+  EXPECT_EQ(store_->get_model("anna", "m1")->bone_scan, "b1");
+  EXPECT_TRUE(absl::IsFailedPrecondition(store_->delete_scan("anna", "b1")));
+  EXPECT_TRUE(absl::IsNotFound(store_->create_model({"anna", "m2", "s1", "h", "", "", 1, "b2"}, {}).status()));
+  ASSERT_TRUE(store_->delete_model("anna", "m1").ok());
+  EXPECT_TRUE(store_->delete_scan("anna", "b1").ok());
+}
+
+TEST_F(StoreTest, ADatabaseOfTheFirstVersionIsBroughtUpToDate) {
+  add_patient("anna");
+  ASSERT_TRUE(store_->create_scan(scan("s1"), {}).ok());
+  ASSERT_TRUE(store_->create_model({"anna", "m1", "s1", "hash", "spec", "report", 1}, {}).ok());
+  store_ = nullptr;
+  {
+    const auto database = Database::open(directory_.file("db"));
+    ASSERT_TRUE(database.ok());
+    ASSERT_TRUE((*database)->execute("ALTER TABLE models DROP COLUMN bone_scan; PRAGMA user_version = 1").ok());
+  }
+  reopen();
+  const auto model = store_->get_model("anna", "m1");
+  ASSERT_TRUE(model.ok()) << model.status();
+  EXPECT_EQ(model->content_hash, "hash");
+  EXPECT_EQ(model->bone_scan, "");
+  reopen();
+  EXPECT_TRUE(store_->get_model("anna", "m1").ok());
+}
+
 TEST_F(StoreTest, RefusesAModelOfAScanThatIsGone) {
   add_patient("anna");
   EXPECT_TRUE(absl::IsNotFound(store_->create_model({"anna", "m1", "s1", "h", "", "", 1}, {}).status()));

@@ -87,6 +87,54 @@ TEST(Conservation, VolumeAndSealedEdges) {
   ledger_case.record({"Winkler wall: leaked into the next zone", "1", 1e-12, winkler.leaked, 0.0, Bound::kAtMost});
 }
 
+/// Energy over an injection and after it.
+struct EnergyLedger {
+  double missing = 0.0;  ///< work that is neither stored nor dissipated at the end, share of the work
+  double growth = 0.0;   ///< most that elastic and kinetic energy grew in a step after the injection, share of the work
+};
+
+EnergyLedger keep_energy(double step) {
+  simulation::SimulationSpec spec = make_two_zones(simulation::FilmWallKind::kTissue);
+  spec.step = step;
+  auto simulation = make_simulation(make_two_layers(), spec);
+  if (!simulation) return {1.0, 1.0};
+  EnergyLedger ledger;
+  double before = 0.0;
+  while (simulation->phase() == simulation::Phase::kRunning) {
+    const double injected = simulation->report().injected;
+    simulation->advance_step();
+    const simulation::StepReport& report = simulation->report();
+    const double stored = report.elastic_energy + report.kinetic_energy;
+    if (injected == report.injected) ledger.growth = std::max(ledger.growth, (stored - before) / report.injection_work);
+    before = stored;
+  }
+  EXPECT_EQ(simulation->phase(), simulation::Phase::kFinished) << simulation->reason();
+  const simulation::StepReport& report = simulation->report();
+  EXPECT_GT(report.injection_work, 0.0);
+  EXPECT_GT(report.film_dissipation, 0.0);
+  ledger.missing = 1.0 - (before + report.film_dissipation) / report.injection_work;
+  return ledger;
+}
+
+/// What is missing is what implicit Euler dissipates of itself: it shrinks with the step.
+TEST(Conservation, EnergyBalances) {
+  Case energy({"conservation/3-energy", "Energy of an injection into tissue",
+               "None: work = elastic + kinetic + dissipated, and nothing grows without a source."});
+  const std::vector<double> steps = {0.04, 0.02, 0.01};
+  std::vector<double> missing;
+  EnergyLedger fine;
+  for (const double step : steps) {
+    fine = keep_energy(step);
+    missing.push_back(fine.missing);
+    EXPECT_LE(fine.growth, 1e-9);
+  }
+  energy.record(
+      {"work neither stored nor dissipated, steps of 10 ms: share", "1", 0.05, fine.missing, 0.0, Bound::kAtMost});
+  energy.record(
+      {"growth of stored energy in a step without a source: share", "1", 1e-9, fine.growth, 0.0, Bound::kAtMost});
+  energy.record_series({"energy balance", "step [s]", steps, missing, 1.0, 0.8});
+}
+
 /// Share of the pressure's forces that is left when those on both walls are added up, and of their moments about the
 /// middle.
 struct Imbalance {

@@ -8,6 +8,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "core/simulation/film_layout.h"
 #include "core/simulation/tissue_setup.h"
 #include "core/simulation/wall_pressure.h"
@@ -28,14 +29,18 @@ std::string number(double value) {
 }
 
 /// A name of the plan as a part of a set's name: letters, digits and underscores.
-std::string set_name(const char* kind, size_t index, const std::string& name) {
+std::string safe_name(const std::string& name) {
   constexpr size_t kLongestName = 40;
   std::string safe;
   for (const char c : name.substr(0, kLongestName)) {
-    safe +=
-        absl::ascii_isalnum(static_cast<unsigned char>(c)) ? absl::ascii_toupper(static_cast<unsigned char>(c)) : '_';
+    const auto letter = static_cast<unsigned char>(c);
+    safe += absl::ascii_isalnum(letter) ? absl::ascii_toupper(letter) : '_';
   }
-  return absl::StrCat(kind, index + 1, "_", safe);
+  return safe;
+}
+
+std::string set_name(const char* kind, size_t index, const std::string& name) {
+  return absl::StrCat(kind, index + 1, "_", safe_name(name));
 }
 
 /// A face of a hexahedron under pressure; both numbered from 1.
@@ -81,6 +86,21 @@ constexpr char kHeading[] =
     "device.\n"
     "** Units: mm, N, MPa, tonne, s. Made for CalculiX; solve with: ccx NAME, the file being NAME.inp.\n"
     "** Nodes are doubled where a film opens. Rest shape, static: no inertia, no damping.\n";
+
+/// A comment on forces of the simulation that the deck leaves out, for whoever compares; empty when there are none.
+std::string name_what_is_left_out(const FaceModel& model, const SimulationSpec& spec) {
+  std::vector<std::string> left_out;
+  if (!spec.ligaments.empty()) left_out.push_back("ligaments");
+  for (const FilmSpec& film : spec.films) {
+    if (film.connective_tissue.stiffness > 0.0) left_out.push_back("fibres across the film " + safe_name(film.name));
+  }
+  for (const TissueLayerSpec& layer : model.layers) {
+    if (layer.material.prestress > 0.0) left_out.push_back("prestress of the layer " + safe_name(layer.name));
+  }
+  return left_out.empty()
+             ? ""
+             : absl::StrCat("** In the simulation but not in this deck: ", absl::StrJoin(left_out, ", "), "\n");
+}
 
 }  // namespace
 
@@ -277,7 +297,7 @@ absl::StatusOr<CalculixDeck> CalculixDeck::create(const FaceModel& model, const 
   content->layers = model.layers;
   content->gravity = spec.gravity;
 
-  content->add(kHeading);
+  content->add(kHeading + name_what_is_left_out(model, spec));
   content->add_nodes();
   content->add_elements();
   content->add_materials();

@@ -24,9 +24,10 @@ namespace lipofill::simulation {
 ///     *DLOAD             the film's pressure on both walls: follows the faces (*STEP, NLGEOM); gravity where it is set
 ///     *NODE PRINT, FILE  U of NSET SKIN, in the order of the skin mesh; U of all nodes
 ///
-/// The state it describes is that at rest under load: inertia, damping and fat that still flows are not in it. Text is
-/// made piece by piece, so that a deck of any size takes little memory. Checked by
-/// tests/unit/simulation/calculix_deck_test.cc and, solved by ccx, tests/verification/coupling/calculix_test.cc.
+/// The state it describes is that at rest under load: inertia, damping and fat that still flows are not in it; nor are
+/// ligaments, fibres across films and prestress, which the deck then names in a comment. Text is made piece by piece,
+/// so that a deck of any size takes little memory. Checked by tests/unit/simulation/calculix_deck_test.cc and, solved
+/// by ccx, tests/verification/coupling/calculix_test.cc.
 class CalculixDeck {
  public:
   /// Pressure of the films' cells [Pa], in the order of the plan's films; those on other walls than tissue do not

@@ -2,6 +2,8 @@
 
 #include "core/simulation/calculix_deck.h"
 
+#include <gmock/gmock.h>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -78,7 +80,8 @@ class Deck {
   }
   std::map<int, Eigen::Vector3d> nodes() const {
     std::map<int, Eigen::Vector3d> positions;
-    for (const auto& line : all("*NODE, NSET=ALL").at(0).lines) {
+    const Card card = all("*NODE, NSET=ALL").at(0);
+    for (const auto& line : card.lines) {
       positions[std::stoi(line.at(0))] = {std::stod(line.at(1)), std::stod(line.at(2)), std::stod(line.at(3))};
     }
     return positions;
@@ -101,8 +104,8 @@ Deck write_deck(const FaceModel& model, const SimulationSpec& spec, const std::v
 TEST(CalculixDeck, HasEveryNodeAndElementOfTheSplitMesh) {
   const auto model = make_small_model();
   const Deck deck = write_deck(*model, make_small_plan(), constant_pressure(36, 500.0));
-  // Three levels of 13 x 13 nodes; those off the edge of the film's level are there twice.
-  EXPECT_EQ(deck.nodes().size(), 3u * 169u + 121u);
+  // Three levels of 13 x 13 nodes; those of the film's level are there twice, on the rim too.
+  EXPECT_EQ(deck.nodes().size(), 4u * 169u);
   const auto elements = deck.all("*ELEMENT, TYPE=C3D8I");
   ASSERT_EQ(elements.size(), 2u);
   EXPECT_EQ(elements[0].head, "*ELEMENT, TYPE=C3D8I, ELSET=LAYER1_SKIN");
@@ -111,8 +114,8 @@ TEST(CalculixDeck, HasEveryNodeAndElementOfTheSplitMesh) {
   EXPECT_EQ(elements[1].lines.front().at(0), "145");
   EXPECT_EQ(elements[1].lines.back().at(0), "288");
   EXPECT_EQ(deck.set("SKIN").size(), 169u);
-  // Rim of three levels, and the base: 48 x 3 + 121.
-  EXPECT_EQ(deck.set("FIXED").size(), 48u * 3u + 121u);
+  // The rim, and what of the base is not rim.
+  EXPECT_EQ(deck.set("FIXED").size(), 4u * 48u + 121u);
   EXPECT_TRUE(deck.set("HELD_X").empty());
   EXPECT_TRUE(deck.all("*SPRING").empty());
 }
@@ -176,7 +179,7 @@ TEST(CalculixDeck, AFilmOnBonePressesOneWallAndLeavesBoneOut) {
   const Deck deck = write_deck(*model, plan, constant_pressure(36, 500.0));
   ASSERT_EQ(deck.all("*DLOAD").size(), 1u);
   EXPECT_EQ(deck.all("*DLOAD")[0].lines.front().at(1), "P1");
-  EXPECT_EQ(deck.set("BONE").size(), 121u);
+  EXPECT_EQ(deck.set("BONE").size(), 169u);
   const auto fixed = deck.set("FIXED");
   for (const int node : deck.set("BONE")) EXPECT_EQ(std::count(fixed.begin(), fixed.end(), node), 0);
 }
@@ -189,8 +192,8 @@ TEST(CalculixDeck, HoldsRollersAndElasticSupports) {
   ASSERT_TRUE(model.ok());
   const Deck deck = write_deck(**model, make_small_plan(), constant_pressure(36, 0.0));
   EXPECT_TRUE(deck.set("FIXED").empty());
-  EXPECT_EQ(deck.set("HELD_X").size(), 3u * 26u);
-  EXPECT_EQ(deck.set("HELD_Y").size(), 3u * 26u);
+  EXPECT_EQ(deck.set("HELD_X").size(), 4u * 26u);
+  EXPECT_EQ(deck.set("HELD_Y").size(), 4u * 26u);
   EXPECT_TRUE(deck.set("HELD_Z").empty());
   // The springs of one direction together carry the stiffness of the whole base, 2 kPa/mm over 48 x 48 mm; along x and
   // y those of the sides on rollers are not there.
@@ -258,8 +261,28 @@ TEST(CalculixDeck, TakesThePressureOfARunningSimulation) {
   ASSERT_TRUE(made.ok()) << made.status();
   const Deck deck(read_all(*made));
   double highest = 0.0;
-  for (const auto& line : deck.all("*DLOAD")[0].lines) highest = std::max(highest, std::stod(line[2]));
+  const Card loads = deck.all("*DLOAD").at(0);
+  for (const auto& line : loads.lines) highest = std::max(highest, std::stod(line[2]));
   EXPECT_NEAR(highest, simulation->report().max_pressure * 1e-6, 1e-6 * highest);
+}
+
+TEST(CalculixDeck, NamesTheForcesItLeavesOut) {
+  const auto head_of = [](const FaceModelSpec& spec, const SimulationSpec& plan) {
+    const auto model = build_face_model(spec, nullptr);
+    EXPECT_TRUE(model.ok()) << model.status();
+    auto deck = CalculixDeck::create(**model, plan, constant_pressure(36, 1.0));
+    EXPECT_TRUE(deck.ok()) << deck.status();
+    return deck->read(CalculixDeck::kLongestLine);
+  };
+  FaceModelSpec spec = make_small_model_spec();
+  SimulationSpec plan = make_small_plan();
+  EXPECT_THAT(head_of(spec, plan), ::testing::Not(::testing::HasSubstr("not in this deck")));
+  spec.layers[0].material.prestress = 1000.0;
+  plan.films[0].connective_tissue.stiffness = 1e5;
+  plan.ligaments = {
+      {"band", "film", "", std::vector<geometry::SkinPoint>{geometry::ChartPoint{0.5, 0.5}}, 100.0, 0.0, std::nullopt}};
+  EXPECT_THAT(head_of(spec, plan), ::testing::HasSubstr("but not in this deck: ligaments, fibres across the film FILM, "
+                                                        "prestress of the layer SKIN\n"));
 }
 
 TEST(CalculixDeck, RefusesWhatIsNoTissueOrNoPressure) {

@@ -1,0 +1,37 @@
+#include "tests/verification/coupling/jaw_case.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "client/cpp/plan_file.h"
+#include "core/geometry/surface_reader.h"
+#include "server/rpc/model_conversion.h"
+#include "server/rpc/simulation_conversion.h"
+
+namespace lipofill::verification {
+
+JawCase make_jaw_case() {
+  auto plan = client::load_plan(LIPOFILL_EXAMPLES "/plans/jaw_angle.json");
+  EXPECT_TRUE(plan.ok()) << plan.status();
+  if (!plan.ok()) return {};
+  EXPECT_TRUE(client::load_plan_landmarks(&*plan).ok());
+  // What the daemon would have put there: the scan and the model are passed on as they are.
+  plan->plan.mutable_model()->mutable_scan_region()->set_scan("patients/jaw/scans/face");
+  plan->plan.mutable_simulation()->set_model("patients/jaw/models/face");
+  std::ifstream file(*plan->scan_file, std::ios::binary);
+  std::stringstream bytes;
+  bytes << file.rdbuf();
+  auto scan = geometry::read_surface(bytes.str(), geometry::SurfaceFormat::kObj, 1e-3);
+  auto model_spec = server::to_face_model_spec(plan->plan.model());
+  auto spec = server::to_simulation_spec(plan->plan.simulation());
+  EXPECT_TRUE(scan.ok() && model_spec.ok() && spec.ok()) << scan.status() << model_spec.status() << spec.status();
+  if (!scan.ok() || !model_spec.ok() || !spec.ok()) return {};
+  std::get<geometry::ScanRegionSpec>(model_spec->region).scan = *std::move(scan);
+  auto model = simulation::build_face_model(*model_spec, nullptr);
+  EXPECT_TRUE(model.ok()) << model.status();
+  return {model.ok() ? *std::move(model) : nullptr, *std::move(spec)};
+}
+
+}  // namespace lipofill::verification

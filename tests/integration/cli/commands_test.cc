@@ -80,6 +80,14 @@ TEST_F(CommandsTest, ModelAndSimulationStepByStep) {
   const auto simulation = ask("simulation create long.json --id s --model " + model_name);
   EXPECT_EQ(simulation["state"], "READY");
   EXPECT_EQ(tell("export s --out early").exit_code, 4);
+  EXPECT_EQ(tell("export s").exit_code, 2);
+  // A deck does not wait for the end.
+  ask("export s --deck early.inp");
+  EXPECT_THAT(read("early.inp"), ::testing::EndsWith("*END STEP\n"));
+  EXPECT_FALSE(exists("early.inp.part"));
+  EXPECT_EQ(tell("export s --deck no/such/folder/deck.inp").exit_code, 2);
+  EXPECT_EQ(tell("export none --deck none.inp").exit_code, 4);
+  EXPECT_FALSE(exists("none.inp") || exists("none.inp.part"));
   EXPECT_EQ(ask("simulation start s")["state"], "RUNNING");
   // 64-bit numbers are strings in the JSON of proto3.
   for (int i = 0; i < 200 && ask("simulation get s")["summary"]["steps"] == "0"; ++i) continue;
@@ -130,7 +138,9 @@ TEST_F(CommandsTest, ResultsOutliveTheDaemon) {
   EXPECT_EQ(daemon_->terminate(), 0);
   EXPECT_EQ(tell("export " + simulation + " --out again").exit_code, 3);
   start();
-  ask("export " + simulation + " --out again");
+  EXPECT_THAT(tell("export " + simulation + " --out again --deck tissue.inp").output,
+              HasSubstr("at 0.5 s to tissue.inp"));
+  EXPECT_THAT(read("tissue.inp"), ::testing::StartsWith("*HEADING\n"));
   EXPECT_EQ(read_json("again/summary.json")["state_hash"], summary["state_hash"]);
   EXPECT_EQ(read("again/series.csv"), read("out/series.csv"));
   EXPECT_EQ(read("again/skin_0000.vtp"), read("out/skin_0005.vtp"));

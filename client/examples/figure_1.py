@@ -8,7 +8,7 @@ spreads. Every run goes through `lipofill run --spawn`, with a plan made from pl
   figure_1.py --lipofill BIN --check                         a small version without plots: fails unless curves converge and
                                                              order by stiffness
 
-Exit code 1: they do not. The same results give the same bytes.
+Exit code 1: they do not; 2: a run failed. The same results give the same bytes.
 """
 
 import argparse
@@ -111,6 +111,18 @@ def simulate(lipofill, run, end_s, folder):
             heights[round(1e3 * float(row["time_s"]))] = float(row["probe_centre_thickness_mm"])
             volumes.append(float(row["film_volume_ml"]))
     return heights, max(abs(volume / volumes[0] - 1.0) for volume in volumes)
+
+
+def simulate_all(lipofill, study):
+    """Heights by run, and the largest relative error of volume."""
+    heights, volume_error = {}, 0.0
+    with tempfile.TemporaryDirectory() as folder:
+        for number, run in enumerate(study.all_runs(), 1):
+            print(f"figure_1: run {number} of {len(study.all_runs())}, {run.step_ms:g} ms, {run.film_cells} x "
+                  f"{run.film_cells} cells, {run.modulus_kpa:g} kPa", flush=True)
+            heights[run], error = simulate(lipofill, run, study.end_s, pathlib.Path(folder))
+            volume_error = max(volume_error, error)
+    return heights, volume_error
 
 
 def common_times(study):
@@ -285,13 +297,11 @@ def main():
     if not arguments.check and not arguments.out:
         parser.error("either --out or --check")
     study = CHECK if arguments.check else FIGURE
-    heights, volume_error = {}, 0.0
-    with tempfile.TemporaryDirectory() as folder:
-        for number, run in enumerate(study.all_runs(), 1):
-            print(f"figure_1: run {number} of {len(study.all_runs())}, {run.step_ms:g} ms, {run.film_cells} x "
-                  f"{run.film_cells} cells, {run.modulus_kpa:g} kPa", flush=True)
-            heights[run], error = simulate(arguments.lipofill, run, study.end_s, pathlib.Path(folder))
-            volume_error = max(volume_error, error)
+    try:
+        heights, volume_error = simulate_all(arguments.lipofill, study)
+    except (OSError, subprocess.CalledProcessError) as error:
+        print(f"figure_1: {error}", file=sys.stderr)
+        return 2
     step, cell, collapse = measure(study, heights)
     for study_of in (step, cell):
         print(f"figure_1: {study_of.what} {study_of.sizes}: differences {study_of.differences} mm, order {study_of.order:.2f}")

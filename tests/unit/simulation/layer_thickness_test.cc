@@ -104,9 +104,10 @@ TEST(LayerThickness, WhatCannotBeAskedForIsRefusedBeforeTheScanIsReadOver) {
   EXPECT_THAT(refused_fields(twice), ElementsAre("layers[1].down_to_bone"));
 
   FaceModelSpec bounds = make_spherical_head();
-  bounds.layers[1].down_to_bone = DownToBone{0.1e-3, 0.05e-3};
+  bounds.layers[1].down_to_bone = DownToBone{0.1e-3, 0.05e-3, -1e-3};
   EXPECT_THAT(refused_fields(bounds),
-              ElementsAre("layers[1].down_to_bone.min_thickness_mm", "layers[1].down_to_bone.max_thickness_mm"));
+              ElementsAre("layers[1].down_to_bone.min_thickness_mm", "layers[1].down_to_bone.max_thickness_mm",
+                          "layers[1].down_to_bone.smoothing_mm"));
 
   FaceModelSpec regional = make_spherical_head();
   regional.layers[0].regional_thickness = true;

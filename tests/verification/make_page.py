@@ -53,6 +53,12 @@ def read_cases(folder):
     return cases
 
 
+def plain_name(test):
+    """Suite.Name as in the source: without the instance and the parameter of a TEST_P."""
+    suite, name = test.split(".", 1)
+    return f"{suite.split('/')[-1]}.{name.split('/')[0]}"
+
+
 def section_of(case_id):
     return case_id.split("/")[0]
 
@@ -119,11 +125,25 @@ def summary(cases):
     for case_id in sorted(cases, key=place_of):
         case = cases[case_id]
         shares = [share for share in map(share_of_tolerance, case["figures"]) if share is not None]
-        orders = ", ".join(f"{s['observed_order']:.2f} ({s['expected_order']:g})" for s in case["series"])
+        orders = ", ".join(describe_orders(group) for group in series_groups(case).values())
         worst = f"{100.0 * max(shares):.0f} %" if shares else ""
         count = len(case["figures"]) + len(case["series"])
         lines.append(f"| [{case['title']}](#{anchor(case_id)}) | {case['reference']} | {count} | {worst} | {orders} |")
     return "\n".join(lines)
+
+
+def series_groups(case):
+    """Series that belong in one plot: the same kind of refinement and the same order expected."""
+    groups = {}
+    for series in case["series"]:
+        groups.setdefault((series["resolution_name"], series["expected_order"]), []).append(series)
+    return groups
+
+
+def describe_orders(group):
+    observed = sorted({f"{series['observed_order']:.2f}" for series in group}, key=float)
+    span = observed[0] if len(observed) == 1 else f"{observed[0]} to {observed[-1]}"
+    return f"{span} ({group[0]['expected_order']:g})"
 
 
 def share_of_tolerance(figure):
@@ -143,7 +163,8 @@ def anchor(case_id):
 
 def plot(case_id, case, folder):
     """Draws the case's series and curves side by side; returns the file's name, or None where there is nothing to draw."""
-    panels = [(draw_series, series) for series in case["series"]] + [(draw_curve, curve) for curve in case["curves"]]
+    panels = [(draw_series, group) for group in series_groups(case).values()]
+    panels += [(draw_curve, curve) for curve in case["curves"]]
     if not panels:
         return None
     import matplotlib
@@ -166,17 +187,24 @@ def plot(case_id, case, folder):
     return name
 
 
-def draw_series(axis, series):
-    x = series["resolutions"]
-    errors = [abs(error) for error in series["errors"]]
-    axis.loglog(x, errors, "o-", label="measured")
-    sign = -1.0 if x[-1] > x[0] else 1.0
-    axis.loglog(x, [errors[-1] * (value / x[-1]) ** (sign * series["expected_order"]) for value in x], "k--", linewidth=0.8,
-                label=f"order {series['expected_order']:g}")
-    axis.set_title(series["quantity"], fontsize=9)
-    axis.set_xlabel(series["resolution_name"])
+def draw_series(axis, group):
+    """Errors of all series of a group, and the slope expected through the last point of the first."""
+    for series in group:
+        axis.loglog(series["resolutions"], [abs(error) for error in series["errors"]], "o-", markersize=4, linewidth=1.0,
+                    label=series["quantity"])
+    x = group[0]["resolutions"]
+    power = group[0]["expected_order"] * (-1.0 if x[-1] > x[0] else 1.0)
+    last = abs(group[0]["errors"][-1])
+    axis.loglog(x, [last * (value / x[-1]) ** power for value in x], "k--", linewidth=0.8,
+                label=f"order {group[0]['expected_order']:g}")
+    axis.set_xticks(x, [f"{value:.3g}" for value in x])
+    axis.minorticks_off()
+    axis.set_xlabel(group[0]["resolution_name"])
     axis.set_ylabel("relative error")
-    axis.legend()
+    if len(group) <= 6:
+        axis.legend(fontsize=7)
+    else:
+        axis.set_title(f"{len(group)} series; dashed: order {group[0]['expected_order']:g}", fontsize=9)
 
 
 def draw_curve(axis, curve):
@@ -185,6 +213,7 @@ def draw_curve(axis, curve):
     if curve["logarithmic"]:
         axis.set_xscale("log")
         axis.set_yscale("log")
+        axis.xaxis.set_minor_formatter("")
     axis.set_title(curve["name"], fontsize=9)
     axis.set_xlabel(curve["x_label"])
     axis.set_ylabel(curve["y_label"])
@@ -217,7 +246,7 @@ def make_page(records, page, images):
             parts.append(f"## {SECTIONS.get(section, section.capitalize())}")
             last_section = section
         parts.append(case_text(case_id, cases[case_id], plot(case_id, cases[case_id], images), images_from_page))
-    names = sorted({test for case in cases.values() for test in case["tests"]})
+    names = sorted({plain_name(test) for case in cases.values() for test in case["tests"]})
     parts.append(NAMES_HEADING)
     parts.append("\n".join(f"- `{name}`" for name in names))
     page.write_text("\n\n".join(parts) + "\n")
@@ -229,7 +258,7 @@ def tests_in(folder):
     found = set()
     for source in sorted(folder.glob("*/*_test.cc")):
         text = source.read_text()
-        found |= {f"{suite}.{name}" for suite, name in re.findall(r"^TEST(?:_F)?\(\s*(\w+)\s*,\s*(\w+)\s*\)", text, re.MULTILINE)}
+        found |= {f"{suite}.{name}" for suite, name in re.findall(r"^TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)", text, re.MULTILINE)}
     return found
 
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kThinnestMm = 0.2;
 constexpr double kThickestMm = 100.0;
+constexpr double kLongestSmoothingMm = 50.0;
 
 std::string field_of(size_t layer, const char* name) {
   return absl::StrCat("layers[", layer, "].", name);
@@ -39,6 +40,7 @@ void check_down_to_bone(const TissueLayerSpec& layer, size_t index, bool is_squa
   const double max_mm = layer.down_to_bone->max_thickness * 1e3;
   violations.check_range(field + ".min_thickness_mm", min_mm, kThinnestMm, kThickestMm, "mm");
   violations.check_range(field + ".max_thickness_mm", max_mm, min_mm, kThickestMm, "mm");
+  violations.check_range(field + ".smoothing_mm", layer.down_to_bone->smoothing * 1e3, 0.0, kLongestSmoothingMm, "mm");
   if (is_square) violations.add(field, "needs a scan_region with a bone_scan, the model is a square");
   if (!is_square && !has_bone) violations.add(field, "needs scan_region.bone_scan, which is missing");
 }
@@ -88,7 +90,7 @@ absl::StatusOr<Eigen::VectorXd> take_rest(const geometry::LayeredGrid& grid, con
 /// Gives the layer at `index` what the others leave of the distance to the bone.
 absl::Status go_down_to_bone(const geometry::LayeredGrid& grid, const FaceModelSpec& spec, size_t index,
                              std::vector<Eigen::VectorXd>& thickness, LayerThickness& result) {
-  const auto measured = geometry::measure_bone_depth(grid, *spec.bone);
+  const auto measured = geometry::measure_bone_depth(grid, *spec.bone, spec.layers[index].down_to_bone->smoothing);
   if (!measured.ok()) return measured.status();
   Eigen::VectorXd others = Eigen::VectorXd::Zero(grid.nodes_per_level());
   for (size_t l = 0; l < thickness.size(); ++l) {

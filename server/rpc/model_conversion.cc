@@ -55,6 +55,7 @@ simulation::DownToBone read_down_to_bone(const v1::DownToBone& message) {
   simulation::DownToBone bounds;
   if (message.has_min_thickness_mm()) bounds.min_thickness = message.min_thickness_mm() * kMetrePerMillimetre;
   if (message.has_max_thickness_mm()) bounds.max_thickness = message.max_thickness_mm() * kMetrePerMillimetre;
+  if (message.has_smoothing_mm()) bounds.smoothing = message.smoothing_mm() * kMetrePerMillimetre;
   return bounds;
 }
 

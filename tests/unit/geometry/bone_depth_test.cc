@@ -39,9 +39,9 @@ double exact_depth(const Eigen::Vector3d& skin) {
   return kRadius - along - std::sqrt(kBoneRadius * kBoneRadius - kBoneCentre.squaredNorm() + along * along);
 }
 
-double largest_error(int n) {
+double largest_error(int n, double smoothing) {
   const LayeredGrid grid = make_spherical_skin(n);
-  const auto bone = measure_bone_depth(grid, make_bone(8 * n));
+  const auto bone = measure_bone_depth(grid, make_bone(8 * n), smoothing);
   EXPECT_TRUE(bone.ok()) << bone.status();
   EXPECT_EQ(bone->measured_share, 1.0);
   double error = 0.0;
@@ -52,8 +52,8 @@ double largest_error(int n) {
 }
 
 TEST(BoneDepth, OfASphereOutOfTheMiddleOfAnotherIsKnown) {
-  const double coarse = largest_error(10);
-  const double fine = largest_error(20);
+  const double coarse = largest_error(10, 6e-3);
+  const double fine = largest_error(20, 3e-3);
   printf("error of the depth, 10 and 20 cells: %.4f and %.4f mm\n", coarse * 1e3, fine * 1e3);
   EXPECT_LT(coarse, 0.2e-3);
   EXPECT_LT(fine, 0.05e-3);
@@ -63,9 +63,9 @@ TEST(BoneDepth, OfASphereOutOfTheMiddleOfAnotherIsKnown) {
 TEST(BoneDepth, DoesNotDependOnTheOrientationOfTheBone) {
   const LayeredGrid grid = make_spherical_skin(8);
   SurfaceMesh bone = make_bone(40);
-  const auto outwards = measure_bone_depth(grid, bone);
+  const auto outwards = measure_bone_depth(grid, bone, 2e-3);
   for (auto& triangle : bone.triangles) std::swap(triangle[1], triangle[2]);
-  const auto inwards = measure_bone_depth(grid, bone);
+  const auto inwards = measure_bone_depth(grid, bone, 2e-3);
   ASSERT_TRUE(outwards.ok() && inwards.ok());
   EXPECT_LT((outwards->depth - inwards->depth).cwiseAbs().maxCoeff(), 1e-12);
 }
@@ -89,7 +89,7 @@ TEST(BoneDepth, AHoleIsFilledFromAroundWithinTheMeasuredRange) {
     return p.x() > 0.0 && std::hypot(p.y(), p.z()) < 0.008;
   });
   // The far side of the sphere is farther than bone is looked for.
-  const auto depth = measure_bone_depth(grid, bone);
+  const auto depth = measure_bone_depth(grid, bone, 2e-3);
   ASSERT_TRUE(depth.ok()) << depth.status();
   EXPECT_LT(depth->measured_share, 0.95);
   EXPECT_GT(depth->measured_share, 0.80);
@@ -102,22 +102,23 @@ TEST(BoneDepth, AHoleIsFilledFromAroundWithinTheMeasuredRange) {
 
 TEST(BoneDepth, TooLittleBoneIsAnErrorWithTheShare) {
   const LayeredGrid grid = make_spherical_skin(20);
-  const auto little = measure_bone_depth(grid, cut(make_bone(80), Eigen::Vector3d::UnitZ(), -0.016));
+  const auto little = measure_bone_depth(grid, cut(make_bone(80), Eigen::Vector3d::UnitZ(), -0.016), 2e-3);
   EXPECT_EQ(little.status().code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(little.status().message()), ::testing::HasSubstr("must be at least 25 %"));
   SurfaceMesh far = make_bone(10);
   far.points.array() += 1.0;
-  EXPECT_THAT(std::string(measure_bone_depth(grid, far).status().message()), ::testing::HasSubstr("lies under 0.0 %"));
+  EXPECT_THAT(std::string(measure_bone_depth(grid, far, 2e-3).status().message()),
+              ::testing::HasSubstr("lies under 0.0 %"));
 }
 
 TEST(BoneDepth, ABrokenSurfaceIsRefused) {
   const LayeredGrid grid = make_spherical_skin(4);
   SurfaceMesh bone = make_bone(4);
   bone.triangles[3][1] = bone.n_vertices();
-  const absl::Status status = measure_bone_depth(grid, bone).status();
+  const absl::Status status = measure_bone_depth(grid, bone, 2e-3).status();
   ASSERT_EQ(field_violations_of(status).size(), 1u);
   EXPECT_EQ(field_violations_of(status)[0].field, "scan_region.bone_scan");
-  EXPECT_FALSE(measure_bone_depth(grid, SurfaceMesh{}).ok());
+  EXPECT_FALSE(measure_bone_depth(grid, SurfaceMesh{}, 0.0).ok());
 }
 
 TEST(RayTree, FindsTheFirstOfSeveralSurfaces) {

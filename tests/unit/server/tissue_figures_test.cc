@@ -81,7 +81,7 @@ TEST(TissueFigures, LayersCarryTheirKindTensionAndThicknessIntoTheCore) {
     tissue_preset: ELASTOGRAPHY
     layers { name: "skin" prestress_kpa: 20 regional_thickness: true }
     layers { name: "gel" thickness_mm { constant: 2 } youngs_modulus_kpa: 1 poisson_ratio: 0.4 density_kg_m3: 1000 }
-    layers { name: "muscle" down_to_bone { max_thickness_mm: 12 } })"));
+    layers { name: "muscle" down_to_bone { max_thickness_mm: 12 smoothing_mm: 5 } })"));
   ASSERT_TRUE(spec.ok()) << spec.status();
   EXPECT_EQ(spec->layers[0].kind, anatomy::TissueKind::kSkin);
   EXPECT_TRUE(spec->layers[0].regional_thickness);
@@ -89,6 +89,7 @@ TEST(TissueFigures, LayersCarryTheirKindTensionAndThicknessIntoTheCore) {
   EXPECT_FALSE(spec->layers[1].kind.has_value());
   EXPECT_EQ(spec->layers[1].material.prestress, 0.0);
   EXPECT_DOUBLE_EQ(spec->layers[2].down_to_bone->max_thickness, 12e-3);
+  EXPECT_DOUBLE_EQ(spec->layers[2].down_to_bone->smoothing, 5e-3);
   EXPECT_DOUBLE_EQ(spec->layers[2].down_to_bone->min_thickness, 1e-3) << "the default of the core";
   EXPECT_FALSE(spec->bone.has_value());
 }

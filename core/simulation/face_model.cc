@@ -130,6 +130,13 @@ absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec, con
   });
 }
 
+/// Where the bone makes the layers fold, the caller can do more than with layers of a thickness of their own.
+absl::Status with_advice(const absl::Status& status, const LayerThickness& thickness) {
+  if (!absl::IsFailedPrecondition(status) || !thickness.bone) return status;
+  return absl::FailedPreconditionError(absl::StrCat(
+      status.message(), "; or raise smoothing_mm or lower max_thickness_mm of the layer down to the bone"));
+}
+
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceModelSpec& spec,
@@ -147,7 +154,7 @@ absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceMode
   for (size_t l = 0; l < spec.layers.size(); ++l) {
     layers.push_back({thickness->fields[l], spec.layers[l].geometry.elements_through});
   }
-  if (const absl::Status laid = geometry::lay_layers(layers, *face); !laid.ok()) return laid;
+  if (const absl::Status laid = geometry::lay_layers(layers, *face); !laid.ok()) return with_advice(laid, *thickness);
 
   model->geometry = *std::move(face);
   model->layers = spec.layers;

@@ -25,7 +25,7 @@ struct Support {
 struct DownToBone {
   double min_thickness = 1e-3;   ///< [m] less anywhere is an error
   double max_thickness = 30e-3;  ///< [m] where bone lies deeper the layer ends here
-  double smoothing = 3e-3;       ///< [m] of the depth; 0: none
+  double smoothing = 6e-3;       ///< [m] of the depth; 0: none
 };
 
 struct TissueLayerSpec {

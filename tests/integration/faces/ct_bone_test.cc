@@ -39,7 +39,7 @@ class CtBoneTest : public CliTest {
     plan["model"]["tissue_preset"] = "ELASTOGRAPHY";
     plan["model"]["layers"] = {{{"name", "skin"}},
                                {{"name", "subcutaneous"}, {"thickness_mm", {{"constant", 2.0}}}},
-                               {{"name", "muscle"}, {"down_to_bone", {{"max_thickness_mm", 25}}}}};
+                               {{"name", "muscle"}, {"down_to_bone", {{"max_thickness_mm", 25}, {"smoothing_mm", 6}}}}};
     write("plan.json", plan.dump());
   }
 

@@ -33,7 +33,8 @@ void FilmProjection::set_thickness(const Eigen::VectorXd& volume_guess, const Ei
   for (Eigen::Index k = 0; k < leak_conductance_.size(); ++k) {
     const LeakyWall& wall = grid_->leaky_walls[k];
     const bool from_left = flux_guess.size() <= grid_->n_edges() || flux_guess[grid_->n_edges() + k] >= 0.0;
-    const double upstream = h[from_left ? wall.left : wall.right];
+    const bool is_closed = !input_.is_closed.empty() && (input_.is_closed[wall.left] || input_.is_closed[wall.right]);
+    const double upstream = is_closed ? 0.0 : h[from_left ? wall.left : wall.right];
     const double filled = input_.leak_full_thickness > 0.0 ? std::min(1.0, upstream / input_.leak_full_thickness)
                                                            : static_cast<double>(upstream > 0.0);
     leak_conductance_[k] = wall.conductance * filled;

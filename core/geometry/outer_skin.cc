@@ -14,9 +14,10 @@ constexpr int kFreeRaysOfSkin = 4;
 constexpr double kLargestIsland = 1e-4;  // [m2]
 constexpr double kRayStart = 2e-5;       // [m] above the surface, so that a ray does not meet its own triangle
 
-/// The normal and two rings of six around it, 30 and 60 degrees off.
-std::array<Eigen::Vector3d, kRays> make_ray_directions(const Eigen::Vector3d& normal) {
-  const Eigen::Vector3d u = normal.unitOrthogonal();
+/// The normal and two rings of six around it, 30 and 60 degrees off. They start from a direction of the surface's own,
+/// so that a patient turned in space is seen the same.
+std::array<Eigen::Vector3d, kRays> make_ray_directions(const Eigen::Vector3d& normal, const Eigen::Vector3d& along) {
+  const Eigen::Vector3d u = (along - along.dot(normal) * normal).normalized();
   const Eigen::Vector3d v = normal.cross(u);
   std::array<Eigen::Vector3d, kRays> directions;
   directions[0] = normal;
@@ -29,11 +30,12 @@ std::array<Eigen::Vector3d, kRays> make_ray_directions(const Eigen::Vector3d& no
 }
 
 /// Whether enough of the rays are free for skin.
-bool is_open(const RayTree& rays, const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
+bool is_open(const RayTree& rays, const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
+             const Eigen::Vector3d& along) {
   const Eigen::Vector3d start = position + kRayStart * normal;
   int free_rays = 0;
   int left = kRays;
-  for (const Eigen::Vector3d& direction : make_ray_directions(normal)) {
+  for (const Eigen::Vector3d& direction : make_ray_directions(normal, along)) {
     if (free_rays + left < kFreeRaysOfSkin) return false;
     --left;
     if (!rays.is_blocked(start, direction) && ++free_rays >= kFreeRaysOfSkin) return true;
@@ -81,7 +83,8 @@ std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across,
     is_candidate[t] = true;
     const Eigen::Vector3d normal = compute_area_vector(mesh, mesh.triangles[t]).normalized();
     const Eigen::Vector3d centre = compute_centre(mesh, mesh.triangles[t]);
-    outer[t] = is_open(rays, centre, normal);
+    const Eigen::Vector3d edge = mesh.points.col(mesh.triangles[t][1]) - mesh.points.col(mesh.triangles[t][0]);
+    outer[t] = is_open(rays, centre, normal, edge);
   }
   take_in_islands(mesh, across, is_candidate, outer);
   return outer;

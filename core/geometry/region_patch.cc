@@ -39,14 +39,38 @@ VertexGraph make_vertex_graph(const SurfaceMesh& mesh) {
   return graph;
 }
 
-/// Distances along edges from a point in a triangle to all vertices (Dijkstra).
+bool holds(const SurfaceMesh& mesh, int triangle, const Eigen::Vector3d& position) {
+  constexpr double kRoundOff = 1e-7;
+  const Eigen::Vector3d weights = compute_barycentric(mesh, triangle, position);
+  if (weights.minCoeff() < -kRoundOff) return false;
+  const auto& c = mesh.triangles[triangle];
+  const Eigen::Vector3d there =
+      weights[0] * mesh.points.col(c[0]) + weights[1] * mesh.points.col(c[1]) + weights[2] * mesh.points.col(c[2]);
+  return (there - position).norm() <= kRoundOff * std::sqrt(compute_area_vector(mesh, c).norm());
+}
+
+/// Vertices of the triangles that hold a point: of two where it lies on an edge, of all around where it is a vertex.
+/// Which of them a search finds first is up to round-off.
+std::vector<int> find_vertices_around(const SurfaceMesh& mesh, const SurfacePoint& point) {
+  const auto& own = mesh.triangles[point.triangle];
+  std::vector<int> around(own.begin(), own.end());
+  for (int t = 0; t < mesh.n_triangles(); ++t) {
+    const auto& other = mesh.triangles[t];
+    const bool touches = std::any_of(other.begin(), other.end(),
+                                     [&](int v) { return std::find(own.begin(), own.end(), v) != own.end(); });
+    if (touches && holds(mesh, t, point.position)) around.insert(around.end(), other.begin(), other.end());
+  }
+  return around;
+}
+
+/// Distances along edges from a point to all vertices (Dijkstra); `around`: the vertices around the point.
 std::vector<double> compute_edge_distances(const SurfaceMesh& mesh, const VertexGraph& graph,
-                                           const SurfacePoint& source) {
+                                           const Eigen::Vector3d& source, const std::vector<int>& around) {
   std::vector<double> distance(mesh.n_vertices(), kUnreached);
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
-  for (const int v : mesh.triangles[source.triangle]) {
-    distance[v] = (mesh.points.col(v) - source.position).norm();
+  for (const int v : around) {
+    distance[v] = (mesh.points.col(v) - source).norm();
     front.emplace(distance[v], v);
   }
   while (!front.empty()) {
@@ -70,12 +94,14 @@ std::vector<double> add_up_distances(const SurfaceMesh& skin, const std::array<S
   const VertexGraph graph = make_vertex_graph(skin);
   std::vector<double> sum(skin.n_vertices(), 0.0);
   at_corner.fill(0.0);
-  for (const SurfacePoint& corner : corners) {
-    const std::vector<double> distance = compute_edge_distances(skin, graph, corner);
+  std::array<std::vector<int>, 4> around;
+  for (size_t k = 0; k < corners.size(); ++k) around[k] = find_vertices_around(skin, corners[k]);
+  for (size_t from = 0; from < corners.size(); ++from) {
+    const std::vector<double> distance = compute_edge_distances(skin, graph, corners[from].position, around[from]);
     for (int v = 0; v < skin.n_vertices(); ++v) sum[v] += distance[v];
     for (size_t k = 0; k < corners.size(); ++k) {
       double nearest = kUnreached;
-      for (const int v : skin.triangles[corners[k].triangle]) nearest = std::min(nearest, distance[v]);
+      for (const int v : around[k]) nearest = std::min(nearest, distance[v]);
       at_corner[k] += nearest;
     }
   }

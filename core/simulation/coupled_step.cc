@@ -98,7 +98,7 @@ StepOutcome CoupledStep::try_step(const SimulationState& state, const std::vecto
   for (const FilmState& film : state.films) solution.flux.push_back(film.velocity);
   if (!solve_tissue_and_films(state, dt, outcome, solution)) return outcome;
   outcome.void_volume = solution.void_volume;
-  if (!finish_tissue(state, dt, outcome)) return outcome;
+  finish_tissue(state, dt, outcome);
   finish_films(state, dt, solution, outcome.state);
   outcome.state.time = state.time + dt;
   outcome.state.step = state.step + 1;
@@ -145,7 +145,14 @@ bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt,
     }
     outcome.gap = gap_of_walls(solution.pressure);
     for (size_t k = 0; k < cell_of_tissue_.size(); ++k) outcome.gap[cell_of_tissue_[k]] += gaps_->volume()[k];
-    if (gap_error(outcome.gap, solution.volume + solution.void_volume) <= kGapTolerance) return true;
+    if (gap_error(outcome.gap, solution.volume + solution.void_volume) > kGapTolerance) continue;
+    if (tissue_) outcome.min_scaled_jacobian = solid::compute_min_scaled_jacobian(tissue_->tissue.mesh(), x);
+    // The barrier against elements turned inside out (solid/inversion_barrier.h) drives folded ones back.
+    if (outcome.min_scaled_jacobian > 0.0) return true;
+  }
+  if (!(outcome.min_scaled_jacobian > 0.0)) {
+    outcome.reason = "a hexahedron of the tissue is turned inside out";
+    return false;
   }
   outcome.reason = absl::StrCat("the gap differs from the film's volume by a share of ",
                                 gap_error(outcome.gap, solution.volume + solution.void_volume), " after ",
@@ -153,23 +160,17 @@ bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt,
   return false;
 }
 
-/// False: the tissue is not one that could be shown. Ligaments that carry more than they can are broken from now on.
-bool CoupledStep::finish_tissue(const SimulationState& from, double dt, StepOutcome& outcome) {
-  if (!tissue_) return true;
+/// Ligaments that carry more than they can are broken from now on.
+void CoupledStep::finish_tissue(const SimulationState& from, double dt, StepOutcome& outcome) {
+  if (!tissue_) return;
   SimulationState& next = outcome.state;
   next.velocities = (next.positions - from.positions) / dt;
-  outcome.min_scaled_jacobian = solid::compute_min_scaled_jacobian(tissue_->tissue.mesh(), next.positions);
-  if (!(outcome.min_scaled_jacobian > 0.0)) {
-    outcome.reason = "a hexahedron of the tissue is turned inside out";
-    return false;
-  }
   describe_tissue(outcome, dt);
   for (const LigamentLayout& ligament : tissue_->ligaments) {
     for (int k = ligament.first_spring; k < ligament.first_spring + ligament.n_springs; ++k) {
       if (outcome.spring_tension[k] > ligament.breaking_force) next.spring_is_intact[k] = 0.0;
     }
   }
-  return true;
 }
 
 /// Energies and springs. Assembles where the next step begins.

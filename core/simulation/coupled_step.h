@@ -95,7 +95,7 @@ class CoupledStep {
   void enter_injected_cells(const std::vector<Eigen::VectorXd>& injected, SimulationState& state) const;
   void finish_films(const SimulationState& from, double dt, const coupling::FilmSolveResult& solution,
                     SimulationState& next) const;
-  bool finish_tissue(const SimulationState& from, double dt, StepOutcome& outcome);
+  void finish_tissue(const SimulationState& from, double dt, StepOutcome& outcome);
   int n_ligament_springs() const;
   Eigen::VectorXd compute_gap(const SimulationState& state);
   Eigen::VectorXd gather(const SimulationState& state, Eigen::VectorXd FilmState::*values) const;

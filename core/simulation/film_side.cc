@@ -25,10 +25,12 @@ void enter_cells_beside_pressure(const FilmLayout& layout, FilmState& film) {
   const auto presses = [&](int cell) {
     return before[cell] > 0.0 && film.pressure[cell] > layout.connective_tissue.entry_pressure;
   };
-  for (const film::Edge& edge : layout.grid.edges) {
-    if (presses(edge.left)) film.is_entered[edge.right] = 1.0;
-    if (presses(edge.right)) film.is_entered[edge.left] = 1.0;
-  }
+  const auto enter = [&](int left, int right) {
+    if (presses(left)) film.is_entered[right] = 1.0;
+    if (presses(right)) film.is_entered[left] = 1.0;
+  };
+  for (const film::Edge& edge : layout.grid.edges) enter(edge.left, edge.right);
+  for (const film::LeakyWall& wall : layout.grid.leaky_walls) enter(wall.left, wall.right);
 }
 
 }  // namespace

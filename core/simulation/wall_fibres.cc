@@ -40,7 +40,8 @@ Around look_around(const geometry::LayeredGrid& grid, const geometry::ChartPoint
 /// Index of the film of a name among those on tissue, -1 with a violation.
 int find_film(const std::vector<FilmOnTissue>& films, const std::string& name, const std::string& field,
               FieldViolations& violations) {
-  const auto found = std::find_if(films.begin(), films.end(), [&](const FilmOnTissue& f) { return f.film->name == name; });
+  const auto found =
+      std::find_if(films.begin(), films.end(), [&](const FilmOnTissue& f) { return f.film->name == name; });
   if (found != films.end()) return static_cast<int>(found - films.begin());
   violations.add(field, absl::StrCat("is '", name, "', which is no film on tissue of the plan"));
   return -1;

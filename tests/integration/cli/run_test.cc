@@ -127,9 +127,15 @@ TEST_F(RunTest, DiscardLeavesOnlyTheFiles) {
 }
 
 TEST_F(RunTest, AFailedSimulationIsAResultWithExitCode1) {
-  // Far more than the plane holds, at once.
-  write_plan("burst.json", "/simulation/injections/0",
-             {{"zone", "middle"}, {"volume_ml", 9.0}, {"rate_ml_per_s", 900.0}});
+  // Fat pressed between rigid walls has nowhere to go.
+  write_plan(
+      "burst.json", "/simulation/films/0",
+      {{"name", "film"},
+       {"wall", {{"kind", "RIGID"}}},
+       {"n_xi", 4},
+       {"n_eta", 4},
+       {"rest_thickness_mm", {{"constant", 1.0}}},
+       {"zones", {{{"name", "middle"}, {"box", {{"xi_min", 0}, {"xi_max", 1}, {"eta_min", 0}, {"eta_max", 1}}}}}}});
   const CommandResult result = run("lipofill run burst.json --out out --spawn --no-picture");
   EXPECT_EQ(result.exit_code, 1) << result.errors;
   EXPECT_THAT(result.output, HasSubstr("square: FAILED ("));

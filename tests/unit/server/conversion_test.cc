@@ -182,5 +182,49 @@ TEST(InjectionConversion, NamesWhatIsMissing) {
               UnorderedElementsAre("volume_ml", "rate_ml_per_s", "site"));
 }
 
+TEST(SimulationConversion, ReadsFatLigamentsWallsAndConnectiveTissue) {
+  const auto spec = to_simulation_spec(parse<v1::SimulationSpec>(R"(
+    model: "patients/a/models/b" fat { preset: COLEMAN yield_stress_pa: 3 } suction_limit_pa: 700
+    films { name: "film" below_layer: "skin" n_xi: 4 n_eta: 4 zones { name: "a" box { xi_min: 0 xi_max: 1 eta_min: 0 eta_max: 1 } }
+      walls { name: "septum" path { points { chart { xi: 0.5 eta: 0 } } points { chart { xi: 0.5 eta: 1 } } }
+              leakage_ml_per_s_kpa_cm: 2 }
+      connective_tissue { stiffness_kpa_per_mm: 0.5 entry_pressure_pa: 900 } }
+    ligaments { name: "zygomatic" anatomical: "zygomatic_left" slack_mm: 1.5 }
+    ligaments { name: "septum" points { points { chart { xi: 0.2 eta: 0.3 } } } stiffness_n_per_mm: 0.1 breaking_force_n: 4 }
+    time { error_tolerance_mm: 0.1 })"));
+  ASSERT_TRUE(spec.ok()) << spec.status();
+  EXPECT_EQ(spec->fat_flow_index, 0.28);
+  EXPECT_EQ(spec->fat_viscosity, 48.0);
+  EXPECT_EQ(spec->fat_yield_stress, 3.0);
+  EXPECT_EQ(spec->fat_shear_modulus, 70.0);
+  EXPECT_EQ(spec->suction_limit, 700.0);
+  EXPECT_DOUBLE_EQ(spec->error_tolerance, 1e-4);
+  EXPECT_EQ(spec->films[0].walls[0].path.size(), 2u);
+  EXPECT_DOUBLE_EQ(spec->films[0].walls[0].leakage, 2e-7);
+  EXPECT_DOUBLE_EQ(spec->films[0].connective_tissue.stiffness, 5e5);
+  EXPECT_EQ(spec->films[0].connective_tissue.entry_pressure, 900.0);
+  EXPECT_EQ(std::get<simulation::NamedLigament>(spec->ligaments[0].place).name, "zygomatic_left");
+  EXPECT_DOUBLE_EQ(spec->ligaments[0].slack, 1.5e-3);
+  EXPECT_FALSE(spec->ligaments[0].stiffness.has_value());
+  EXPECT_DOUBLE_EQ(*spec->ligaments[1].stiffness, 100.0);
+  EXPECT_EQ(spec->ligaments[1].breaking_force, 4.0);
+}
+
+TEST(SimulationConversion, NamesWhatDoesNotGoTogether) {
+  const auto refused = [](const std::string& text) {
+    return fields_of(to_simulation_spec(parse<v1::SimulationSpec>("model: \"m\" " + text)).status());
+  };
+  EXPECT_THAT(refused("fat { flow_index: 0.5 viscosity_pa_s: 10 }"), ElementsAre("fat.viscosity_pa_s"));
+  EXPECT_THAT(refused("fat { consistency_pa_s_n: 10 }"), ElementsAre("fat.consistency_pa_s_n"));
+  EXPECT_THAT(refused("fat { preset: COLEMAN flow_index: 0.5 }"), ElementsAre("fat.consistency_pa_s_n"));
+  EXPECT_THAT(refused("ligaments { name: \"l\" }"), ElementsAre("ligaments[0].points"));
+  EXPECT_THAT(refused("ligaments { name: \"l\" points { points { chart { xi: 0.1 eta: 0.1 } } } }"),
+              ElementsAre("ligaments[0].stiffness_n_per_mm"));
+  EXPECT_THAT(refused("films { name: \"f\" n_xi: 1 n_eta: 1 walls { name: \"w\" } }"),
+              ElementsAre("films[0].walls[0].path"));
+  EXPECT_THAT(refused("films { name: \"f\" n_xi: 1 n_eta: 1 walls { between { first: \"a\" } } }"),
+              UnorderedElementsAre("films[0].walls[0].name", "films[0].walls[0].between.second"));
+}
+
 }  // namespace
 }  // namespace lipofill::server

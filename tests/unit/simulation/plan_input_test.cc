@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "core/base/field_violations.h"
-#include "tests/unit/simulation/small_case.h"
+#include "tests/unit/simulation/bad_plan.h"
 
 namespace lipofill::simulation {
 namespace {
@@ -17,28 +16,11 @@ using testing::Contains;
 using testing::Field;
 using testing::HasSubstr;
 
-struct BadPlan {
-  std::string name;
-  std::function<void(SimulationSpec&)> spoil;
-  std::string field;
-  std::string description;
-};
-
-class PlanIsRefused : public testing::TestWithParam<BadPlan> {};
+const double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST_P(PlanIsRefused, NamingFieldValueAndBound) {
-  SimulationSpec spec = make_small_plan();
-  GetParam().spoil(spec);
-  const auto created = Simulation::create(make_small_model(), spec);
-  ASSERT_FALSE(created.ok());
-  EXPECT_EQ(created.status().code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(field_violations_of(created.status()),
-              Contains(testing::AllOf(Field(&FieldViolation::field, GetParam().field),
-                                      Field(&FieldViolation::description, HasSubstr(GetParam().description)))))
-      << created.status();
+  expect_refused(GetParam());
 }
-
-const double kNan = std::numeric_limits<double>::quiet_NaN();
 
 INSTANTIATE_TEST_SUITE_P(
     Every, PlanIsRefused,

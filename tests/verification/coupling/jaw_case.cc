@@ -12,7 +12,7 @@
 
 namespace lipofill::verification {
 
-JawCase make_jaw_case() {
+JawPlan load_jaw_plan() {
   auto plan = client::load_plan(LIPOFILL_EXAMPLES "/plans/jaw_angle.json");
   EXPECT_TRUE(plan.ok()) << plan.status();
   if (!plan.ok()) return {};
@@ -29,9 +29,15 @@ JawCase make_jaw_case() {
   EXPECT_TRUE(scan.ok() && model_spec.ok() && spec.ok()) << scan.status() << model_spec.status() << spec.status();
   if (!scan.ok() || !model_spec.ok() || !spec.ok()) return {};
   std::get<geometry::ScanRegionSpec>(model_spec->region).scan = *std::move(scan);
-  auto model = simulation::build_face_model(*model_spec, nullptr);
+  return {*std::move(model_spec), *std::move(spec), true};
+}
+
+JawCase make_jaw_case() {
+  JawPlan plan = load_jaw_plan();
+  if (!plan.ok) return {};
+  auto model = simulation::build_face_model(plan.model, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
-  return {model.ok() ? *std::move(model) : nullptr, *std::move(spec)};
+  return {model.ok() ? *std::move(model) : nullptr, std::move(plan.simulation)};
 }
 
 }  // namespace lipofill::verification

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+#include "core/base/field_violations.h"
+#include "tests/unit/simulation/small_case.h"
+
+namespace lipofill::simulation {
+
+struct BadPlan {
+  std::string name;
+  std::function<void(SimulationSpec&)> spoil;
+  std::string field;
+  std::string description;  ///< part of it: the value or the bound
+};
+
+/// Spoils the small plan and expects to be told so.
+class PlanIsRefused : public testing::TestWithParam<BadPlan> {};
+
+inline void expect_refused(const BadPlan& bad) {
+  using testing::Field;
+  SimulationSpec spec = make_small_plan();
+  bad.spoil(spec);
+  const auto created = Simulation::create(make_small_model(), spec);
+  ASSERT_FALSE(created.ok());
+  EXPECT_EQ(created.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(
+      field_violations_of(created.status()),
+      testing::Contains(testing::AllOf(Field(&FieldViolation::field, bad.field),
+                                       Field(&FieldViolation::description, testing::HasSubstr(bad.description)))))
+      << created.status();
+}
+
+}  // namespace lipofill::simulation

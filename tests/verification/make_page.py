@@ -208,8 +208,8 @@ def draw_series(axis, group):
 
 
 def draw_curve(axis, curve):
-    axis.plot(curve["x"], curve["expected"], "k-", linewidth=0.8, label="expected")
-    axis.plot(curve["x"], curve["measured"], ".", markersize=4, label="measured")
+    axis.plot(curve["x"], curve["expected"], "k-", linewidth=0.8, label=curve["expected_label"])
+    axis.plot(curve["x"], curve["measured"], ".", markersize=4, label=curve["measured_label"])
     if curve["logarithmic"]:
         axis.set_xscale("log")
         axis.set_yscale("log")

@@ -83,8 +83,15 @@ json to_json(const Series& s) {
 }
 
 json to_json(const Curve& c) {
-  return {{"name", c.name},         {"x_label", c.x_label},   {"y_label", c.y_label},        {"x", c.x},
-          {"measured", c.measured}, {"expected", c.expected}, {"logarithmic", c.logarithmic}};
+  return {{"name", c.name},
+          {"x_label", c.x_label},
+          {"y_label", c.y_label},
+          {"x", c.x},
+          {"measured", c.measured},
+          {"expected", c.expected},
+          {"logarithmic", c.logarithmic},
+          {"measured_label", c.measured_label},
+          {"expected_label", c.expected_label}};
 }
 
 template <typename T>

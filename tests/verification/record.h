@@ -42,6 +42,8 @@ struct Curve {
   std::vector<double> measured;
   std::vector<double> expected;
   bool logarithmic = false;  ///< both axes
+  std::string measured_label = "measured";
+  std::string expected_label = "expected";
 };
 
 /// One case of the verification suite: a problem whose answer is known without the solver.

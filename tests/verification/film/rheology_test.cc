@@ -135,9 +135,9 @@ TEST(YieldStressDeposit, StopsWhereTheWallStressIsTheYieldStress) {
   record.record({"Newtonian ridge after 4000 s: lowest over highest thickness", "1", 0.9, *lowest / *highest, 0.0,
                  Bound::kAtLeast});
   record.record_curve(
-      {"Bingham ridge at rest against the arrest profile", "x [mm]", "thickness [mm]", x, shape, closed});
-  record.record_curve({"Bingham ridge at rest beside a Newtonian one after the same time (dashed)", "x [mm]",
-                       "thickness [mm]", x, shape, newtonian});
+      {"Bingham ridge at rest", "x [mm]", "thickness [mm]", x, shape, closed, false, "measured", "arrest"});
+  record.record_curve({"The same and a Newtonian ridge", "x [mm]", "thickness [mm]", x, shape, newtonian, false,
+                       "Bingham", "Newtonian"});
 }
 
 // Below the yield stress nothing creeps: a ridge too low to flow keeps its volumes and its pressure gradient.

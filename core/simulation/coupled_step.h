@@ -32,6 +32,7 @@ struct StepOutcome {
   Eigen::VectorXd spring_length;     ///< [m]
   double min_scaled_jacobian = 1.0;  ///< of the tissue at the new positions
   double error = 0.0;                ///< estimate of the step's own, set by the simulation [m]
+  int factorisations = 0;
   int film_iterations = 0;
   int newton_iterations = 0;
 };
@@ -42,8 +43,15 @@ struct StepOutcome {
 ///     B dx + dt J p = d                films:  d = V + injected - outflow at zero pressure - rest - g(x)
 ///
 /// with J the tangent of the fat's flow law and p not below the suction limit (film_solve.h), repeated from the new
-/// positions (Newton) until the gap holds the film's volume to kGapTolerance: B changes with x, so that large steps
-/// need more than one. What mismatch is left enters the next step's d: it cannot accumulate.
+/// positions (Newton) until forces balance to kForceTolerance and the gap holds the film's volume to kGapTolerance.
+/// What mismatch is left enters the next step's d: it cannot accumulate.
+///
+/// S, B and C on the left may be those of earlier positions: only the right sides decide where the iteration ends,
+///
+///     S0 dx - B0^T p' = f(x) + (B(x) - B0)^T p,     B0 dx + J p' = d(x)
+///
+/// A factor is kept until iterations stop converging fast or have cost as much as a new one. Which factor is in use is
+/// part of the state, so that a restored simulation goes on with the same bits.
 class CoupledStep {
  public:
   static absl::StatusOr<std::unique_ptr<CoupledStep>> create(const FaceModel& model,
@@ -79,10 +87,17 @@ class CoupledStep {
   absl::Status check_every_cell_can_open();
   bool open_to(const Eigen::VectorXd& target, double tolerance, SimulationState& state, Eigen::VectorXd& pressure);
 
-  /// Brings the tissue to positions and intact springs; does nothing where it is there already.
-  void assemble(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& spring_is_intact, double dt);
+  /// Brings the tissue's forces to positions and intact springs; does nothing where they are there already.
+  void bring_forces_to(const SimulationState& state, double dt);
+  void assemble(const SimulationState& state, double dt);
+  void set_springs(const SimulationState& state);
   /// The tissue's side of a Newton iteration: assembles at x and factors. False: not positive definite.
   bool linearise_tissue(const SimulationState& state, double dt);
+  /// Factors where the state says that it was factored last, unless that is the factor at hand. False: it cannot.
+  bool take_up_factor(const SimulationState& state);
+  bool factor_here(double dt, SimulationState& state);
+  Eigen::VectorXd coupling_force(const Eigen::VectorXd& pressure) const;
+  double force_error(const Eigen::VectorXd& force, const Eigen::VectorXd& pressure) const;
   Eigen::VectorXd compute_residual_force(const SimulationState& from, const Eigen::Matrix3Xd& x, double dt) const;
   void begin_film_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt);
   Eigen::VectorXd move_freely(size_t film_index, const FilmState& film, const film::Fat& fat, double dt);
@@ -100,6 +115,11 @@ class CoupledStep {
   Eigen::VectorXd compute_gap(const SimulationState& state);
   Eigen::VectorXd gather(const SimulationState& state, Eigen::VectorXd FilmState::*values) const;
   void describe_tissue(StepOutcome& outcome, double dt);
+  bool begin_tissue_step(const SimulationState& from, double dt, StepOutcome& outcome);
+  bool renew_factor(double dt, StepOutcome& outcome);
+  bool is_late(const StepOutcome& outcome) const;
+  bool move_tissue(const SimulationState& from, double dt, const Eigen::VectorXd& dx, StepOutcome& outcome);
+  double measure_error(const coupling::FilmSolveResult& solution, double force_tolerance, StepOutcome& outcome) const;
   bool solve_tissue_and_films(const SimulationState& from, double dt, StepOutcome& outcome,
                               coupling::FilmSolveResult& solution);
 
@@ -121,9 +141,14 @@ class CoupledStep {
   std::vector<std::unique_ptr<film::FilmProjection>> projections_;
   std::vector<film::ImplicitViscosity> viscosity_;
   std::vector<film::FilmMetric> metric_;  ///< of the step under way
-  Eigen::Matrix3Xd assembled_positions_;  ///< where the tissue was last assembled
-  Eigen::VectorXd assembled_springs_;
-  double assembled_dt_ = 0.0;
+  Eigen::Matrix3Xd forces_positions_;     ///< where the tissue's forces are
+  Eigen::VectorXd forces_springs_;
+  Eigen::Matrix3Xd factored_positions_;  ///< of the factor at hand
+  Eigen::VectorXd factored_springs_;
+  double factored_dt_ = 0.0;
+  Eigen::SparseMatrix<double> factored_derivative_;  ///< B0
+  double force_round_off_ = 0.0;                     ///< of the tissue's internal force [N]
+  Eigen::VectorXd force_;                            ///< residual force without that of the films [N]
   Eigen::MatrixXd full_compliance_;  ///< of all cells, when films with other walls stand beside those on tissue
 };
 

@@ -15,6 +15,9 @@ constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 /// A session that needs more would crowd out the others.
 constexpr double kMaxFactorBytes = 4.0 * kGibibyte;
 
+/// Round-off of a sum of stiffness times displacement, over their norms.
+constexpr double kForceRoundOff = 1e-13;
+
 film::Fat make_fat(const SimulationSpec& spec) {
   film::Fat fat;
   fat.viscosity = spec.fat_viscosity;
@@ -67,6 +70,9 @@ absl::Status CoupledStep::set_up() {
   if (tissue_) {
     if (tissue_->tissue.n_dofs() == 0)
       return field_violation("model", "holds every node of its tissue: nothing can move");
+    const Eigen::Matrix3Xd& rest = tissue_->tissue.mesh().rest_positions;
+    const double extent = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
+    force_round_off_ = kForceRoundOff * tissue_->tissue.system_matrix().diagonal().norm() * extent;
     gaps_ = std::make_unique<coupling::GapSystem>(std::move(gaps), tissue_->tissue.n_dofs());
     factor_ = std::make_unique<coupling::CoupledFactor>(tissue_->tissue.system_matrix(), gaps_->derivative());
     if (factor_->factor_bytes() > kMaxFactorBytes) {
@@ -125,6 +131,8 @@ SimulationState CoupledStep::rest_state() const {
     state.positions = tissue_->tissue.mesh().rest_positions;
     state.velocities.setZero(3, state.positions.cols());
     state.spring_is_intact.setOnes(n_ligament_springs());
+    state.factored_positions = state.positions;
+    state.factored_springs = state.spring_is_intact;
   }
   for (size_t f = 0; f < films_.size(); ++f) {
     const film::FilmGrid& grid = films_[f].grid;

@@ -30,6 +30,12 @@ struct SimulationState {
   Eigen::Matrix3Xd positions;        ///< [m]   (3, n_nodes); empty without tissue
   Eigen::Matrix3Xd velocities;       ///< [m/s] (3, n_nodes)
   Eigen::VectorXd spring_is_intact;  ///< 1 or 0, of every spring of a ligament
+  /// Where the tissue was when its system was last factored; the factor serves later steps until it no longer
+  /// converges.
+  Eigen::Matrix3Xd factored_positions;
+  Eigen::VectorXd factored_springs;  ///< spring_is_intact then
+  double factored_dt = 0.0;          ///< [s]; 0: never factored
+  int late_iterations = 0;           ///< that an up-to-date factor would have saved, since then
   std::vector<FilmState> films;
 };
 

@@ -7,7 +7,7 @@
 namespace lipofill::simulation {
 namespace {
 
-constexpr char kMagic[] = "lipofill-state-2";
+constexpr char kMagic[] = "lipofill-state-3";
 
 /// Visits every number of the mutable state in a fixed order, so that writing, reading and hashing cannot disagree.
 template <typename Visitor>
@@ -24,6 +24,10 @@ void visit_state(SimulationState& state, Visitor& visit) {
   visit.array(state.positions.data(), state.positions.size());
   visit.array(state.velocities.data(), state.velocities.size());
   visit.array(state.spring_is_intact.data(), state.spring_is_intact.size());
+  visit.number(state.factored_dt);
+  visit.number(state.late_iterations);
+  visit.array(state.factored_positions.data(), state.factored_positions.size());
+  visit.array(state.factored_springs.data(), state.factored_springs.size());
   for (FilmState& film : state.films) {
     for (Eigen::VectorXd* values :
          {&film.volume, &film.pressure, &film.velocity, &film.volume_rate, &film.wall_stress, &film.is_entered}) {

@@ -57,14 +57,14 @@ ElementAssembler::Scatter ElementAssembler::make_scatter(const HexMesh& mesh, co
   return scatter;
 }
 
-ElementTotals ElementAssembler::add(const Eigen::Matrix3Xd& x, Eigen::VectorXd& stiffness,
-                                    Eigen::VectorXd& force) const {
+/// @param compute  (batch index, result): fills at least force, energy and volume ratio
+template <typename Compute>
+ElementTotals ElementAssembler::add_batches(const Compute& compute, Eigen::VectorXd& force) const {
   ElementTotals totals;
   totals.min_volume_ratio = HUGE_VAL;
   BatchResult result;
   for (size_t k = 0; k < batches_.size(); ++k) {
-    compute_batch(batches_[k], x, result);
-    scatter_stiffness(result, scatters_[k], stiffness.data());
+    compute(k, result);
     scatter_force(result, scatters_[k], force.data());
     const int lanes = std::min(kLanes, n_hexahedra_ - static_cast<int>(k) * kLanes);
     for (int lane = 0; lane < lanes; ++lane) {
@@ -74,6 +74,20 @@ ElementTotals ElementAssembler::add(const Eigen::Matrix3Xd& x, Eigen::VectorXd& 
     }
   }
   return totals;
+}
+
+ElementTotals ElementAssembler::add(const Eigen::Matrix3Xd& x, Eigen::VectorXd& stiffness,
+                                    Eigen::VectorXd& force) const {
+  return add_batches(
+      [&](size_t k, BatchResult& result) {
+        compute_batch(batches_[k], x, result);
+        scatter_stiffness(result, scatters_[k], stiffness.data());
+      },
+      force);
+}
+
+ElementTotals ElementAssembler::add_force(const Eigen::Matrix3Xd& x, Eigen::VectorXd& force) const {
+  return add_batches([&](size_t k, BatchResult& result) { compute_batch_force(batches_[k], x, result); }, force);
 }
 
 void ElementAssembler::scatter_stiffness(const BatchResult& result, const Scatter& scatter, double* values) {

@@ -163,6 +163,7 @@ LIPOFILL_INLINE void rotate_block(const LaneMatrix3& R, const LaneMatrix3& K, La
   }
 }
 
+template <bool kWithStiffness>
 LIPOFILL_INLINE void compute_batch_inline(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result) {
   Lanes relative[8][3];
   gather(batch, x, relative);
@@ -183,15 +184,26 @@ LIPOFILL_INLINE void compute_batch_inline(const ElementBatch& batch, const Eigen
     for (int c = 0; c < 3; ++c) result.energy += 0.5 * d[a][c] * local_force[a][c];
   }
   rotate_force(R, local_force, result.force);
+  if (!kWithStiffness) return;
   for (int pair = 0; pair < kNodePairs; ++pair) rotate_block(R, batch.stiffness[pair], result.stiffness[pair]);
 }
 
 #if defined(__x86_64__)
+template <bool kWithStiffness>
 __attribute__((target("avx2"))) void compute_batch_avx2(const ElementBatch& batch, const Eigen::Matrix3Xd& x,
                                                         BatchResult& result) {
-  compute_batch_inline(batch, x, result);
+  compute_batch_inline<kWithStiffness>(batch, x, result);
 }
 #endif
+
+template <bool kWithStiffness>
+void compute_batch_here(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result) {
+#if defined(__x86_64__)
+  static const bool has_avx2 = __builtin_cpu_supports("avx2");
+  if (has_avx2) return compute_batch_avx2<kWithStiffness>(batch, x, result);
+#endif
+  compute_batch_inline<kWithStiffness>(batch, x, result);
+}
 
 }  // namespace
 
@@ -215,15 +227,15 @@ void ElementBatch::set_lane(int lane, const std::array<int, 8>& hexahedron, cons
 }
 
 void compute_batch_portable(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result) {
-  compute_batch_inline(batch, x, result);
+  compute_batch_inline<true>(batch, x, result);
 }
 
 void compute_batch(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result) {
-#if defined(__x86_64__)
-  static const bool has_avx2 = __builtin_cpu_supports("avx2");
-  if (has_avx2) return compute_batch_avx2(batch, x, result);
-#endif
-  compute_batch_portable(batch, x, result);
+  compute_batch_here<true>(batch, x, result);
+}
+
+void compute_batch_force(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result) {
+  compute_batch_here<false>(batch, x, result);
 }
 
 }  // namespace lipofill::solid

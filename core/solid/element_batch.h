@@ -48,7 +48,10 @@ struct alignas(kLanes * sizeof(double)) BatchResult {
 /// tests/unit/solid/tissue_test.cc against a dense assembly.
 void compute_batch(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result);
 
-/// The same, bit for bit, in the registers that every processor of the family has.
+/// Force, energy and volume ratio alone, the same bits; leaves the stiffness of `result` as it is.
+void compute_batch_force(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result);
+
+/// compute_batch, bit for bit, in the registers that every processor of the family has.
 void compute_batch_portable(const ElementBatch& batch, const Eigen::Matrix3Xd& x, BatchResult& result);
 
 }  // namespace lipofill::solid

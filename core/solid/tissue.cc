@@ -34,6 +34,7 @@ Tissue::Tissue(HexMesh mesh, const std::vector<ElasticMaterial>& materials, Node
       springs_(springs, mesh_.rest_positions, pattern_),
       geometric_values_(pattern_.matrix().nonZeros()),
       stiffness_values_(pattern_.matrix().nonZeros() + 1),
+      ignored_values_(pattern_.matrix().nonZeros() + 1),
       padded_force_(pattern_.n_dofs() + 1),
       internal_force_(pattern_.n_dofs()),
       system_matrix_(pattern_.matrix()) {
@@ -71,22 +72,34 @@ void Tissue::prepare_diagonal() {
 
 void Tissue::assemble(const Eigen::Matrix3Xd& x, double dt) {
   stiffness_values_.setZero();
+  geometric_values_.setZero();
   padded_force_.setZero();
   const ElementTotals totals = elements_->add(x, stiffness_values_, padded_force_);
-  elastic_energy_ = totals.elastic_energy;
-  min_volume_ratio_ = totals.min_volume_ratio;
-  geometric_values_.setZero();
   geometric_stiffness_.add(x, geometric_values_);
   prestress_.add_stiffness(geometric_values_);
-  elastic_energy_ += prestress_.add_force(x, padded_force_);
-  elastic_energy_ += barrier_.add(x, pattern_, geometric_values_, padded_force_);
-  elastic_energy_ += springs_.add(x, stiffness_values_, geometric_values_, padded_force_);
-  add_supports(x);
-  internal_force_ = padded_force_.head(n_dofs());
+  add_all_but_elements(x, totals, stiffness_values_, geometric_values_);
   compose_system_matrix(dt);
 }
 
-void Tissue::add_supports(const Eigen::Matrix3Xd& x) {
+void Tissue::compute_force(const Eigen::Matrix3Xd& x) {
+  ignored_values_.setZero();
+  padded_force_.setZero();
+  const ElementTotals totals = elements_->add_force(x, padded_force_);
+  add_all_but_elements(x, totals, ignored_values_, ignored_values_);
+}
+
+void Tissue::add_all_but_elements(const Eigen::Matrix3Xd& x, const ElementTotals& of_elements,
+                                  Eigen::VectorXd& stiffness, Eigen::VectorXd& geometric) {
+  elastic_energy_ = of_elements.elastic_energy;
+  min_volume_ratio_ = of_elements.min_volume_ratio;
+  elastic_energy_ += prestress_.add_force(x, padded_force_);
+  elastic_energy_ += barrier_.add(x, pattern_, geometric, padded_force_);
+  elastic_energy_ += springs_.add(x, stiffness, geometric, padded_force_);
+  add_supports(x, stiffness);
+  internal_force_ = padded_force_.head(n_dofs());
+}
+
+void Tissue::add_supports(const Eigen::Matrix3Xd& x, Eigen::VectorXd& stiffness_values) {
   for (int a = 0; a < mesh_.n_nodes(); ++a) {
     const double stiffness = supports_.spring[a];
     if (stiffness == 0.0) continue;
@@ -95,7 +108,7 @@ void Tissue::add_supports(const Eigen::Matrix3Xd& x) {
       if (dof < 0) continue;
       const double stretch = x(c, a) - mesh_.rest_positions(c, a);
       padded_force_[dof] += stiffness * stretch;
-      stiffness_values_[diagonal_[dof]] += stiffness;
+      stiffness_values[diagonal_[dof]] += stiffness;
       elastic_energy_ += 0.5 * stiffness * stretch * stretch;
     }
   }

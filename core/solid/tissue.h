@@ -18,6 +18,7 @@
 namespace lipofill::solid {
 
 class ElementAssembler;
+struct ElementTotals;
 
 /// How the nodes are held. Nodes may be in several entries; fixed wins over springs.
 struct NodeSupports {
@@ -68,6 +69,10 @@ class Tissue {
   /// S = K + K_G. Fixed components of `x` count where they are, so a support may be moved. Allocates nothing.
   void assemble(const Eigen::Matrix3Xd& x, double dt);
 
+  /// Brings internal force, energy, volume ratio and springs to the positions `x`, the same bits as assemble, at less
+  /// than half its cost; stiffness and system matrix stay those of the last assemble. Allocates nothing.
+  void compute_force(const Eigen::Matrix3Xd& x);
+
   int n_springs() const { return springs_.size(); }
   /// A broken spring carries nothing from the next assemble on. All are intact at first.
   void set_spring_intact(int spring, bool intact) { springs_.set_intact(spring, intact); }
@@ -76,7 +81,7 @@ class Tissue {
   double spring_tension(int spring) const { return springs_.tension(spring); }
   double spring_length(int spring) const { return springs_.length(spring); }
 
-  /// f_int of the last assemble, springs included, a value a degree of freedom [N].
+  /// f_int of the last assemble or compute_force, springs included, a value a degree of freedom [N].
   const Eigen::VectorXd& internal_force() const { return internal_force_; }
 
   /// K of the last assemble times a vector of degrees of freedom [N]; for damping forces.
@@ -103,7 +108,9 @@ class Tissue {
          const std::vector<WallSpring>& springs);
   void lump_mass(const std::vector<ElasticMaterial>& materials);
   void prepare_diagonal();
-  void add_supports(const Eigen::Matrix3Xd& x);
+  void add_all_but_elements(const Eigen::Matrix3Xd& x, const ElementTotals& of_elements, Eigen::VectorXd& stiffness,
+                            Eigen::VectorXd& geometric);
+  void add_supports(const Eigen::Matrix3Xd& x, Eigen::VectorXd& stiffness_values);
   void compose_system_matrix(double dt);
 
   HexMesh mesh_;
@@ -120,6 +127,7 @@ class Tissue {
   WallSprings springs_;
   Eigen::VectorXd geometric_values_;  ///< K_G in the pattern [N/m]
   Eigen::VectorXd stiffness_values_;  ///< K in the pattern, then one place for what is not kept [N/m]
+  Eigen::VectorXd ignored_values_;    ///< where compute_force lets stiffness go
   Eigen::VectorXd padded_force_;      ///< f_int, then one place for what is not kept [N]
   Eigen::VectorXd internal_force_;
   Eigen::SparseMatrix<double> system_matrix_;

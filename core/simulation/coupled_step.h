@@ -147,7 +147,7 @@ class CoupledStep {
   Eigen::VectorXd factored_springs_;
   double factored_dt_ = 0.0;
   Eigen::SparseMatrix<double> factored_derivative_;  ///< B0
-  double force_round_off_ = 0.0;                     ///< of the tissue's internal force [N]
+  double least_force_ = 0.0;                         ///< what counts as no force beside it [N]
   Eigen::VectorXd force_;                            ///< residual force without that of the films [N]
   Eigen::MatrixXd full_compliance_;  ///< of all cells, when films with other walls stand beside those on tissue
 };

@@ -15,8 +15,8 @@ constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 /// A session that needs more would crowd out the others.
 constexpr double kMaxFactorBytes = 4.0 * kGibibyte;
 
-/// Round-off of a sum of stiffness times displacement, over their norms.
-constexpr double kForceRoundOff = 1e-13;
+/// Of stiffness times extent: a balance of forces this small is round-off.
+constexpr double kLeastForceShare = 1e-10;
 
 film::Fat make_fat(const SimulationSpec& spec) {
   film::Fat fat;
@@ -72,7 +72,7 @@ absl::Status CoupledStep::set_up() {
       return field_violation("model", "holds every node of its tissue: nothing can move");
     const Eigen::Matrix3Xd& rest = tissue_->tissue.mesh().rest_positions;
     const double extent = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
-    force_round_off_ = kForceRoundOff * tissue_->tissue.system_matrix().diagonal().norm() * extent;
+    least_force_ = kLeastForceShare * tissue_->tissue.system_matrix().diagonal().norm() * extent;
     gaps_ = std::make_unique<coupling::GapSystem>(std::move(gaps), tissue_->tissue.n_dofs());
     factor_ = std::make_unique<coupling::CoupledFactor>(tissue_->tissue.system_matrix(), gaps_->derivative());
     if (factor_->factor_bytes() > kMaxFactorBytes) {

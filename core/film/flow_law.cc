@@ -14,23 +14,25 @@ double quadratic(const QuadrantForm& w, double d1, double d2) {
   return w.w11 * d1 * d1 + 2.0 * w.w12 * d1 * d2 + w.w22 * d2 * d2;
 }
 
-/// Mean of the two edges' thicknesses that is either of them where the other is dry or sealed.
-double mean_thickness(const Eigen::VectorXd& h, const QuadrantEdges& edges) {
-  const double h1 = edges.xi < 0 ? 0.0 : h[edges.xi];
-  const double h2 = edges.eta < 0 ? 0.0 : h[edges.eta];
-  return h1 + h2 > 0.0 ? (h1 * h1 + h2 * h2) / (h1 + h2) : 0.0;
+/// 0 where the edge is sealed.
+double at(const Eigen::VectorXd& values, int edge) {
+  return edge < 0 ? 0.0 : values[edge];
 }
 
-template <typename Value>
-Value at(const Eigen::VectorXd& values, int edge, Value sealed) {
-  return edge < 0 ? sealed : values[edge];
+/// Mean of the two edges' thicknesses that is either of them where the other is dry or sealed.
+double mean_thickness(const Eigen::VectorXd& h, const QuadrantEdges& edges) {
+  const double h1 = at(h, edges.xi);
+  const double h2 = at(h, edges.eta);
+  return h1 + h2 > 0.0 ? (h1 * h1 + h2 * h2) / (h1 + h2) : 0.0;
 }
 
 }  // namespace
 
 struct FlowLaw::Response {
   double factor = 0.0;  ///< f
-  double curve = 0.0;   ///< f' / (|grad| c h^3), what the rank-one part of the tangent is multiplied by
+  double flux1 = 0.0;   ///< w D, the reference flux through the xi-edge and the eta-edge
+  double flux2 = 0.0;
+  double curve = 0.0;  ///< f' / (|grad| c h^3), what the rank-one part of the tangent is multiplied by
 };
 
 void FlowLaw::prepare(const FilmMetric& metric, const Fat& fat, const Eigen::VectorXd& edge_thickness,
@@ -66,10 +68,15 @@ void FlowLaw::prepare(const FilmMetric& metric, const Fat& fat, const Eigen::Vec
   }
 }
 
-FlowLaw::Response FlowLaw::respond(const Quadrant& quadrant, double d1, double d2) const {
-  const double gradient = std::sqrt(quadrant.gradient_scale * std::max(0.0, quadratic(quadrant.form, d1, d2)));
+FlowLaw::Response FlowLaw::respond(const Quadrant& quadrant, const QuadrantEdges& edges,
+                                   const Eigen::VectorXd& drive) const {
+  const QuadrantForm& w = quadrant.form;
+  const double d1 = at(drive, edges.xi);
+  const double d2 = at(drive, edges.eta);
+  const double gradient = std::sqrt(quadrant.gradient_scale * std::max(0.0, quadratic(w, d1, d2)));
   const FlowFactor factor = compute_flow_factor(fat_, quadrant.thickness, gradient);
-  return {factor.value, gradient > 0.0 ? factor.slope * quadrant.gradient_scale / gradient : 0.0};
+  return {factor.value, w.w11 * d1 + w.w12 * d2, w.w12 * d1 + w.w22 * d2,
+          gradient > 0.0 ? factor.slope * quadrant.gradient_scale / gradient : 0.0};
 }
 
 Eigen::VectorXd FlowLaw::compute_flux(const Eigen::VectorXd& drive) const {
@@ -77,12 +84,9 @@ Eigen::VectorXd FlowLaw::compute_flux(const Eigen::VectorXd& drive) const {
   for (size_t cell = 0; cell < quadrants_.size(); ++cell) {
     for (int q = 0; q < 4; ++q) {
       const QuadrantEdges edges = quadrant_edges(*grid_, static_cast<int>(cell), q);
-      const QuadrantForm& w = quadrants_[cell][q].form;
-      const double d1 = at(drive, edges.xi, 0.0);
-      const double d2 = at(drive, edges.eta, 0.0);
-      const double factor = respond(quadrants_[cell][q], d1, d2).factor;
-      if (edges.xi >= 0) flux[edges.xi] += factor * (w.w11 * d1 + w.w12 * d2);
-      if (edges.eta >= 0) flux[edges.eta] += factor * (w.w12 * d1 + w.w22 * d2);
+      const Response response = respond(quadrants_[cell][q], edges, drive);
+      if (edges.xi >= 0) flux[edges.xi] += response.factor * response.flux1;
+      if (edges.eta >= 0) flux[edges.eta] += response.factor * response.flux2;
     }
   }
   return flux;
@@ -92,18 +96,13 @@ QuadrantForms FlowLaw::linearise(const Eigen::VectorXd& drive) const {
   QuadrantForms tangent = linear_;
   for (size_t cell = 0; cell < quadrants_.size(); ++cell) {
     for (int q = 0; q < 4; ++q) {
-      const QuadrantEdges edges = quadrant_edges(*grid_, static_cast<int>(cell), q);
-      const QuadrantForm& w = quadrants_[cell][q].form;
-      const double d1 = at(drive, edges.xi, 0.0);
-      const double d2 = at(drive, edges.eta, 0.0);
-      const Response response = respond(quadrants_[cell][q], d1, d2);
+      const Quadrant& quadrant = quadrants_[cell][q];
+      const Response response = respond(quadrant, quadrant_edges(*grid_, static_cast<int>(cell), q), drive);
       const double factor = std::max(response.factor, kLeastTangent);
-      const double flux1 = w.w11 * d1 + w.w12 * d2;
-      const double flux2 = w.w12 * d1 + w.w22 * d2;
       QuadrantForm& t = tangent[cell][q];
-      t.w11 += factor * w.w11 + response.curve * flux1 * flux1;
-      t.w12 += factor * w.w12 + response.curve * flux1 * flux2;
-      t.w22 += factor * w.w22 + response.curve * flux2 * flux2;
+      t.w11 += factor * quadrant.form.w11 + response.curve * response.flux1 * response.flux1;
+      t.w12 += factor * quadrant.form.w12 + response.curve * response.flux1 * response.flux2;
+      t.w22 += factor * quadrant.form.w22 + response.curve * response.flux2 * response.flux2;
     }
   }
   return tangent;

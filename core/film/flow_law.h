@@ -43,7 +43,7 @@ class FlowLaw {
     double thickness = 0.0;
   };
   struct Response;
-  Response respond(const Quadrant& quadrant, double d1, double d2) const;
+  Response respond(const Quadrant& quadrant, const QuadrantEdges& edges, const Eigen::VectorXd& drive) const;
 
   const FilmGrid* grid_;
   Fat fat_;

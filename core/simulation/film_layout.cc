@@ -122,11 +122,6 @@ absl::StatusOr<Membership> make_membership(const FaceModel& model, const ZoneSpe
   });
 }
 
-geometry::ChartPoint slot_centre(const FilmSpec& spec, int i, int j) {
-  return {spec.extent.xi_min + (spec.extent.xi_max - spec.extent.xi_min) * (i + 0.5) / spec.n_xi,
-          spec.extent.eta_min + (spec.extent.eta_max - spec.extent.eta_min) * (j + 0.5) / spec.n_eta};
-}
-
 std::vector<int> assign_zones(const FaceModel& model, const FilmSpec& spec, FieldViolations& violations) {
   std::vector<int> zone_of_slot(static_cast<size_t>(spec.n_xi) * spec.n_eta, -1);
   std::set<std::string> names;
@@ -141,7 +136,7 @@ std::vector<int> assign_zones(const FaceModel& model, const FilmSpec& spec, Fiel
     if (!contains.ok()) continue;
     int claimed = 0;
     for (int slot = 0; slot < static_cast<int>(zone_of_slot.size()); ++slot) {
-      if (zone_of_slot[slot] >= 0 || !(*contains)(slot_centre(spec, slot % spec.n_xi, slot / spec.n_xi))) continue;
+      if (zone_of_slot[slot] >= 0 || !(*contains)(slot_centre(spec, slot))) continue;
       zone_of_slot[slot] = static_cast<int>(z);
       ++claimed;
     }
@@ -156,6 +151,13 @@ std::vector<int> assign_zones(const FaceModel& model, const FilmSpec& spec, Fiel
 }
 
 }  // namespace
+
+geometry::ChartPoint slot_centre(const FilmSpec& spec, int slot) {
+  const int i = slot % spec.n_xi;
+  const int j = slot / spec.n_xi;
+  return {spec.extent.xi_min + (spec.extent.xi_max - spec.extent.xi_min) * (i + 0.5) / spec.n_xi,
+          spec.extent.eta_min + (spec.extent.eta_max - spec.extent.eta_min) * (j + 0.5) / spec.n_eta};
+}
 
 int FilmLayout::cell_at(const geometry::ChartPoint& place) const {
   const double x = (place.xi - grid.extent.xi_min) / (grid.extent.xi_max - grid.extent.xi_min) * grid.n_xi;

@@ -33,6 +33,9 @@ struct FilmLayout {
 /// "films[index]", values in the units of lipofill.v1.Film.
 absl::StatusOr<FilmLayout> place_film(const FaceModel& model, const FilmSpec& spec);
 
+/// Middle of a slot of a film's grid, cell or not.
+geometry::ChartPoint slot_centre(const FilmSpec& spec, int slot);
+
 /// Positions on the undeformed skin over the vertices of a film's grid [m] (3, n_vertices).
 Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film::FilmGrid& film);
 

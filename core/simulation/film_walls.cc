@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
+#include "core/simulation/film_layout.h"
 
 namespace lipofill::simulation {
 namespace {
@@ -86,12 +87,8 @@ std::function<bool(int, int)> make_test(const FaceModel& model, const FilmSpec& 
   const auto path = locate_path(model, wall, field, violations);
   if (!path) return nullptr;
   return [path = *path, &spec, &zone_of_slot](int slot, int next) {
-    const auto centre = [&](int s) {
-      return ChartPoint{
-          spec.extent.xi_min + (spec.extent.xi_max - spec.extent.xi_min) * (s % spec.n_xi + 0.5) / spec.n_xi,
-          spec.extent.eta_min + (spec.extent.eta_max - spec.extent.eta_min) * (s / spec.n_xi + 0.5) / spec.n_eta};
-    };
-    return zone_of_slot[slot] == zone_of_slot[next] && path_crosses(path, centre(slot), centre(next));
+    return zone_of_slot[slot] == zone_of_slot[next] &&
+           path_crosses(path, slot_centre(spec, slot), slot_centre(spec, next));
   };
 }
 

@@ -68,6 +68,7 @@ class LigamentPlacer {
     }
     anatomy::LigamentFigures figures{0.0, std::numeric_limits<double>::infinity()};
     const std::vector<geometry::ChartPoint> points = find_points(spec, field, figures, violations);
+    if (points.empty()) return;
     if (spec.stiffness.has_value()) figures.stiffness = *spec.stiffness;
     if (spec.breaking_force.has_value()) figures.breaking_force = *spec.breaking_force;
     check_figures(spec, figures, field, violations);
@@ -81,7 +82,7 @@ class LigamentPlacer {
                                     ") of the chart, where no zone of the film parts the tissue"));
       }
     }
-    if (layout.n_springs == 0 && !points.empty()) {
+    if (layout.n_springs == 0 && std::holds_alternative<NamedLigament>(spec.place)) {
       violations.add(field, absl::StrCat("'", spec.name, "' reaches no zone of the film"));
     }
     fibres_.ligaments.push_back(std::move(layout));

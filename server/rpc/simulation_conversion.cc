@@ -166,7 +166,8 @@ void read_fat(const v1::Fat& message, const FieldReader& reader, simulation::Sim
     reader.wrong("consistency_pa_s_n", "is given, but with flow index 1 it is viscosity_pa_s");
   }
   const bool figures_are_of_another_law = !message.has_consistency_pa_s_n() && !message.has_viscosity_pa_s() &&
-                                          message.has_flow_index() && message.flow_index() != figures.flow_index;
+                                          message.has_flow_index() && message.flow_index() <= 1.0 &&
+                                          message.flow_index() != figures.flow_index;
   if (figures_are_of_another_law) {
     reader.wrong(message.flow_index() < 1.0 ? "consistency_pa_s_n" : "viscosity_pa_s",
                  "is missing: that of the preset goes with its own flow index");

@@ -38,6 +38,37 @@ inline std::unique_ptr<simulation::Simulation> make_simulation(std::shared_ptr<c
   return created.ok() ? *std::move(created) : nullptr;
 }
 
+/// A strip of cells between rigid walls, 4 mm wide, with two cells probed.
+struct Slot {
+  double length = 0.05;  ///< [m]
+  geometry::ScalarField thickness = geometry::ScalarField::constant(1e-3);
+  int n = 20;
+  int first = 4;  ///< probes 0 and 1
+  int last = 14;
+};
+
+/// `spec` in a slot along which a steady flux [m2/s] runs from the first cell to the last for up to 10 s.
+inline std::unique_ptr<simulation::Simulation> make_slot(simulation::SimulationSpec spec, const Slot& slot,
+                                                         double flux) {
+  const double width = 4e-3;
+  const auto centre = [&](int cell) { return geometry::ChartPoint{(cell + 0.5) / slot.n, 0.5}; };
+  spec.films = {make_film(simulation::FilmWallKind::kRigid, slot.n, 1)};
+  spec.films[0].rest_thickness = slot.thickness;
+  const double rate = flux * width;
+  if (rate > 0.0) {
+    spec.injections = {{"all", rate * 10.0, rate, 0.0, centre(0)},
+                       {"all", -rate * 10.0, rate, 0.0, centre(slot.n - 1)}};
+  }
+  spec.probes = {{"first", "film", centre(slot.first)}, {"last", "film", centre(slot.last)}};
+  spec.settle_skin_speed = 0.0;
+  return make_simulation(make_bare_square(slot.length, width), spec);
+}
+
+/// Pressure at the first probe less that at the second [Pa].
+inline double probed_drop(const simulation::Simulation& simulation) {
+  return simulation.report().probe_pressure[0] - simulation.report().probe_pressure[1];
+}
+
 /// Runs until the simulation ends; it must not fail.
 inline void run(simulation::Simulation& simulation) {
   while (simulation.phase() == simulation::Phase::kRunning) simulation.advance_step();

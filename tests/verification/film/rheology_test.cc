@@ -15,24 +15,14 @@ using simulation::FilmWallKind;
 
 /// Pressure gradient along a slot of 1 mm when q [m2/s] flows through it [Pa/m].
 double measure_gradient(const simulation::SimulationSpec& fat, double q) {
-  const int n = 20;
-  const double length = 0.05;
-  const double width = 4e-3;
   simulation::SimulationSpec spec = fat;
-  spec.films = {make_film(FilmWallKind::kRigid, n, 1)};
-  spec.films[0].rest_thickness = ScalarField::constant(1e-3);
-  const auto centre = [n](int cell) { return ChartPoint{(cell + 0.5) / n, 0.5}; };
-  const double rate = q * width;
-  spec.injections = {{"all", rate, rate, 0.0, centre(0)}, {"all", -rate, rate, 0.0, centre(n - 1)}};
-  spec.probes = {{"in", "film", centre(4)}, {"out", "film", centre(14)}};
   spec.step = 0.1;
   spec.end = 0.5;
-  spec.settle_skin_speed = 0.0;
-  auto simulation = make_simulation(make_bare_square(length, width), spec);
+  auto simulation = make_slot(spec, {}, q);
   if (!simulation) return 0.0;
   run(*simulation);
   EXPECT_LT(simulation->report().film_volume_relative_error, 1e-10);
-  return (simulation->report().probe_pressure[0] - simulation->report().probe_pressure[1]) / (10.0 * length / n);
+  return probed_drop(*simulation) / (10.0 * 0.05 / 20);
 }
 
 const char kSlotReference[] =
@@ -174,7 +164,6 @@ TEST(MaxwellFat, StressGrowsWithTheRelaxationTime) {
   const double relaxation_time = viscosity / modulus;
   const int n = 10;
   const double length = 0.05;
-  const double width = 4e-3;
   const double q = 1e-8;
   const double thickness = 1e-3;
   std::vector<double> errors, steps;
@@ -183,16 +172,9 @@ TEST(MaxwellFat, StressGrowsWithTheRelaxationTime) {
     simulation::SimulationSpec spec;
     spec.fat_viscosity = viscosity;
     spec.fat_shear_modulus = modulus;
-    spec.films = {make_film(FilmWallKind::kRigid, n, 1)};
-    spec.films[0].rest_thickness = ScalarField::constant(thickness);
-    const auto centre = [n](int cell) { return ChartPoint{(cell + 0.5) / n, 0.5}; };
-    const double rate = q * width;
-    spec.injections = {{"all", rate, rate, 0.0, centre(0)}, {"all", -rate, rate, 0.0, centre(n - 1)}};
-    spec.probes = {{"in", "film", centre(2)}, {"out", "film", centre(7)}};
     spec.step = step;
     spec.end = 0.6;
-    spec.settle_skin_speed = 0.0;
-    auto simulation = make_simulation(make_bare_square(length, width), spec);
+    auto simulation = make_slot(spec, {length, ScalarField::constant(thickness), n, 2, 7}, q);
     ASSERT_TRUE(simulation);
     const double steady = 12.0 * viscosity * q / std::pow(thickness, 3);
     double error = 0.0;
@@ -201,7 +183,7 @@ TEST(MaxwellFat, StressGrowsWithTheRelaxationTime) {
       simulation->advance_step();
       const auto& report = simulation->report();
       time.push_back(report.time);
-      measured.push_back((report.probe_pressure[0] - report.probe_pressure[1]) / (5.0 * length / n));
+      measured.push_back(probed_drop(*simulation) / (5.0 * length / n));
       expected.push_back(steady * (1.0 - std::exp(-report.time / relaxation_time)));
       error = std::max(error, std::abs(measured.back() - expected.back()) / steady);
     }
@@ -221,25 +203,17 @@ TEST(GravityInASlot, DrivesTheFluxOfItsWeight) {
                "hydrostatic pressure rho g L in a shut slot; q = rho g h^3/(12 mu) where the pressure is level"});
   const int n = 20;
   const double length = 0.05;
-  const double width = 4e-3;
   const double h = 2e-3;
   const double q = 920.0 * 9.81 * h * h * h / (12.0 * 15.0);
   const auto drop = [&](double flux) {
     simulation::SimulationSpec spec;
     spec.gravity = {9.81, 0.0, 0.0};
-    spec.films = {make_film(FilmWallKind::kRigid, n, 1)};
-    spec.films[0].rest_thickness = ScalarField::constant(h);
-    const auto centre = [n](int cell) { return ChartPoint{(cell + 0.5) / n, 0.5}; };
-    const double rate = flux * width;
-    if (flux > 0.0) spec.injections = {{"all", rate, rate, 0.0, centre(0)}, {"all", -rate, rate, 0.0, centre(n - 1)}};
-    spec.probes = {{"high", "film", centre(4)}, {"low", "film", centre(14)}};
     spec.step = 0.1;
     spec.end = 1.0;
-    spec.settle_skin_speed = 0.0;
-    auto simulation = make_simulation(make_bare_square(length, width), spec);
+    auto simulation = make_slot(spec, {length, ScalarField::constant(h), n, 4, 14}, flux);
     if (!simulation) return 0.0;
     run(*simulation);
-    return simulation->report().probe_pressure[1] - simulation->report().probe_pressure[0];
+    return -probed_drop(*simulation);
   };
   const double hydrostatic = 920.0 * 9.81 * 10.0 * length / n;
   record.record({"hydrostatic difference over 25 mm", "Pa", hydrostatic, drop(0.0), 1e-9});

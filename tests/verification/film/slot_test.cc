@@ -19,23 +19,15 @@ constexpr double kViscosity = 10.0;
 /// Two probes inside a strip of n cells with a steady flux q [m2/s] along it; returns the pressure drop between them
 /// [Pa].
 double measure_drop(double length, const ScalarField& thickness, double q, int n, int first, int last) {
-  const double width = 4e-3;
   simulation::SimulationSpec spec;
   spec.fat_viscosity = kViscosity;
-  spec.films = {make_film(FilmWallKind::kRigid, n, 1)};
-  spec.films[0].rest_thickness = thickness;
-  const auto centre = [n](int cell) { return ChartPoint{(cell + 0.5) / n, 0.5}; };
-  const double rate = q * width;
-  spec.injections = {{"all", rate * 10.0, rate, 0.0, centre(0)}, {"all", -rate * 10.0, rate, 0.0, centre(n - 1)}};
-  spec.probes = {{"in", "film", centre(first)}, {"out", "film", centre(last)}};
   spec.step = 0.1;
   spec.end = 1.0;
-  spec.settle_skin_speed = 0.0;
-  auto simulation = make_simulation(make_bare_square(length, width), spec);
+  auto simulation = make_slot(spec, {length, thickness, n, first, last}, q);
   if (!simulation) return 0.0;
   run(*simulation);
   EXPECT_LT(simulation->report().film_volume_relative_error, 1e-10);
-  return simulation->report().probe_pressure[0] - simulation->report().probe_pressure[1];
+  return probed_drop(*simulation);
 }
 
 // h = 1 mm, mu = 10 Pa s, G = 1e4 Pa/m drives q = h^3 G / (12 mu) = 8.3333e-8 m2/s.

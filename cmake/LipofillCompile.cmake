@@ -12,6 +12,15 @@ endif()
 # Checks of invariants stay armed in a release.
 string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
 
+# The instructions that programs may use. Its vectors reach Eigen's types, so all targets share one setting.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(LIPOFILL_ARCH_DEFAULT x86-64-v3)
+endif()
+set(LIPOFILL_ARCH "${LIPOFILL_ARCH_DEFAULT}" CACHE STRING "Value of -march=; x86-64-v3 has AVX2 and FMA (2013 and later)")
+if(LIPOFILL_ARCH)
+  add_compile_options(-march=${LIPOFILL_ARCH})
+endif()
+
 if(LIPOFILL_SANITIZE)
   add_compile_options(-fsanitize=${LIPOFILL_SANITIZE} -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${LIPOFILL_SANITIZE})

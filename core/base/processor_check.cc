@@ -9,6 +9,7 @@ namespace {
 
 #if defined(__x86_64__) && !defined(LIPOFILL_NO_PROCESSOR_CHECK)
 __attribute__((constructor(101))) void check_processor() {
+  __builtin_cpu_init();  // the compiler's own look at the processor may come after this one
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) return;
   constexpr char kMessage[] =
       "This build of Lipofill needs a processor with AVX2, FMA and BMI2 (x86-64-v3, 2013 and later). For an older one "

@@ -26,22 +26,9 @@ struct Basis {
 /// to the next, and a velocity carried over an edge would lose a little in every step, however short.
 class VelocityField {
  public:
-  VelocityField(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& velocity)
-      : grid_(grid),
-        metric_(metric),
-        flux_xi_((grid.n_xi + 1) * grid.n_eta, 0.0),
-        flux_eta_(grid.n_xi * (grid.n_eta + 1), 0.0) {
-    for (int e = 0; e < grid.n_edges(); ++e) {
-      const int slot = grid.slot_of_cell[grid.edges[e].right];
-      const int i = grid.slot_i(slot);
-      const int j = grid.slot_j(slot);
-      if (grid.edges[e].direction == 0) {
-        flux_xi_[j * (grid.n_xi + 1) + i] = velocity[e];
-      } else {
-        flux_eta_[j * grid.n_xi + i] = velocity[e];
-      }
-    }
-  }
+  VelocityField(const FilmGrid& grid, const FilmMetric& metric, const std::vector<double>& flux_xi,
+                const std::vector<double>& flux_eta)
+      : grid_(grid), metric_(metric), flux_xi_(flux_xi), flux_eta_(flux_eta) {}
 
   Basis basis(const Vector2d& at) const {
     const auto along_xi = [&](int i, int j) { return side(i, j, i + 1, j); };
@@ -112,8 +99,8 @@ class VelocityField {
 
   const FilmGrid& grid_;
   const FilmMetric& metric_;
-  std::vector<double> flux_xi_;   ///< on lines of constant xi, (n_xi + 1, n_eta); 0 on sealed edges
-  std::vector<double> flux_eta_;  ///< on lines of constant eta, (n_xi, n_eta + 1)
+  const std::vector<double>& flux_xi_;
+  const std::vector<double>& flux_eta_;
 };
 
 Vector2d edge_place(const FilmGrid& grid, const Edge& edge) {
@@ -134,8 +121,24 @@ Vector2d stay_in_zone(const VelocityField& field, const Vector2d& start, Vector2
 
 Eigen::VectorXd advect_velocity(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& velocity,
                                 double dt) {
-  const VelocityField field(grid, metric, velocity);
-  Eigen::VectorXd next(grid.n_edges());
+  Eigen::VectorXd next;
+  Advection(grid).advance(metric, velocity, dt, next);
+  return next;
+}
+
+Advection::Advection(const FilmGrid& grid)
+    : grid_(&grid), flux_xi_((grid.n_xi + 1) * grid.n_eta, 0.0), flux_eta_(grid.n_xi * (grid.n_eta + 1), 0.0) {}
+
+void Advection::advance(const FilmMetric& metric, const Eigen::VectorXd& velocity, double dt, Eigen::VectorXd& next) {
+  const FilmGrid& grid = *grid_;
+  for (int e = 0; e < grid.n_edges(); ++e) {
+    const int slot = grid.slot_of_cell[grid.edges[e].right];
+    const bool along_xi = grid.edges[e].direction == 0;
+    const int place = along_xi ? grid.slot_j(slot) * (grid.n_xi + 1) + grid.slot_i(slot) : slot;
+    (along_xi ? flux_xi_ : flux_eta_)[place] = velocity[e];
+  }
+  const VelocityField field(grid, metric, flux_xi_, flux_eta_);
+  next.resize(grid.n_edges());
   for (int e = 0; e < grid.n_edges(); ++e) {
     const Edge& edge = grid.edges[e];
     const int zone = grid.zone_of_cell[edge.left];
@@ -152,7 +155,6 @@ Eigen::VectorXd advect_velocity(const FilmGrid& grid, const FilmMetric& metric, 
     // sqrt(g) u^a = sqrt(g) g^ab v_b
     next[e] = (edge.direction == 0 ? g22 * v1 - g12 * v2 : g11 * v2 - g12 * v1) / b.sqrt_g;
   }
-  return next;
 }
 
 }  // namespace lipofill::film

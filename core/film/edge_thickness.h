@@ -15,8 +15,11 @@ namespace lipofill::film {
 /// thickness stays positive at any step.
 ///
 /// @param h     film thickness [m] (n_cells), each >= 0
-/// @param flux  its sign tells which cell is upstream (n_edges); 0 counts as from left to right
+/// @param flux  its sign tells which cell is upstream (n_edges, or more); 0 counts as from left to right
 /// Checked by tests/unit/film/edge_operators_test.cc.
-Eigen::VectorXd compute_edge_thickness(const FilmGrid& grid, const Eigen::VectorXd& h, const Eigen::VectorXd& flux);
+void compute_edge_thickness(const FilmGrid& grid, const Eigen::Ref<const Eigen::VectorXd>& h,
+                            const Eigen::Ref<const Eigen::VectorXd>& flux, Eigen::VectorXd& thickness);
+Eigen::VectorXd compute_edge_thickness(const FilmGrid& grid, const Eigen::Ref<const Eigen::VectorXd>& h,
+                                       const Eigen::Ref<const Eigen::VectorXd>& flux);
 
 }  // namespace lipofill::film

@@ -14,6 +14,12 @@ QuadrantMetric metric_of(const Eigen::Vector3d& g1, const Eigen::Vector3d& g2) {
 FilmMetric compute_film_metric(const FilmGrid& grid, const Eigen::Matrix3Xd& vertices) {
   FilmMetric metric;
   metric.vertices = vertices;
+  update_film_metric(grid, metric);
+  return metric;
+}
+
+void update_film_metric(const FilmGrid& grid, FilmMetric& metric) {
+  const Eigen::Matrix3Xd& vertices = metric.vertices;
   metric.quadrants.resize(grid.n_cells());
   metric.area.resize(grid.n_cells());
   metric.centre.resize(3, grid.n_cells());
@@ -34,7 +40,6 @@ FilmMetric compute_film_metric(const FilmGrid& grid, const Eigen::Matrix3Xd& ver
     metric.area[cell] = area;
     metric.centre.col(cell) = 0.25 * (x00 + x10 + x01 + x11);
   }
-  return metric;
 }
 
 }  // namespace lipofill::film

@@ -33,6 +33,9 @@ struct FilmMetric {
 /// Second order on smooth charts. Checked by tests/unit/film/edge_operators_test.cc.
 FilmMetric compute_film_metric(const FilmGrid& grid, const Eigen::Matrix3Xd& vertices);
 
+/// Brings the rest of a metric to its `vertices`. Allocates nothing once the metric has its size.
+void update_film_metric(const FilmGrid& grid, FilmMetric& metric);
+
 /// The edges a quadrant touches (-1: sealed).
 struct QuadrantEdges {
   int xi = -1;

@@ -31,41 +31,49 @@ struct FilmStepInput {
 ///     F  = h_e U + law(rho b . dX - G p)               flux [m3/s], law of flow_law.h; through leaky walls k (p_l -
 ///     p_r) V' = V + injected + dt G^T F
 ///
-/// in flux form: what leaves a cell enters its neighbour, to the last bit but rounding. Checked by
-/// tests/unit/coupling/film_solve_test.cc.
+/// in flux form: what leaves a cell enters its neighbour, to the last bit but rounding. After the first step nothing is
+/// allocated. Checked by tests/unit/coupling/film_solve_test.cc.
 class FilmProjection {
  public:
   explicit FilmProjection(const FilmGrid& grid);
 
+  /// What the next step brings, to be filled in place before begin_step; at first it is what the last step brought.
+  FilmStepInput& next_input() { return input_; }
+  void begin_step();
   void begin_step(FilmStepInput input);
 
   /// Takes edge thicknesses and with them mobilities from a guess of the new volume, upwind by a guess of the flux.
-  void set_thickness(const Eigen::VectorXd& volume_guess, const Eigen::VectorXd& flux_guess);
+  void set_thickness(const Values& volume_guess, const Values& flux_guess);
 
   /// Whether V' is linear in p.
   bool is_linear() const { return law_.is_linear(); }
   /// -dV'/dp = dt J at a pressure [m3/Pa]; both triangles, in a pattern that never changes.
-  const Eigen::SparseMatrix<double>& linearise(const Eigen::VectorXd& pressure);
+  const Eigen::SparseMatrix<double>& linearise(const Values& pressure);
   /// F at a pressure, through the open edges and then the leaky walls [m3/s] (n_edges + n_leaky_walls).
-  Eigen::VectorXd compute_flux(const Eigen::VectorXd& pressure) const;
-  /// V' of a flux [m3].
-  Eigen::VectorXd compute_volume(const Eigen::VectorXd& flux) const;
+  void compute_flux(const Values& pressure, Eigen::VectorXd& flux);
+  Eigen::VectorXd compute_flux(const Values& pressure);
+  /// V' of a flux [m3] (n_cells).
+  void compute_volume(const Values& flux, Eigen::Ref<Eigen::VectorXd> volume) const;
+  Eigen::VectorXd compute_volume(const Values& flux) const;
   /// U' of a flux [m2/s] (n_edges); 0 on dry edges.
-  Eigen::VectorXd compute_velocity(const Eigen::VectorXd& flux) const;
+  void compute_velocity(const Values& flux, Eigen::VectorXd& velocity) const;
   /// T' = h D / 2 at a pressure [Pa m] (n_edges); empty when the fat is not elastic.
-  Eigen::VectorXd compute_wall_stress(const Eigen::VectorXd& pressure) const;
+  void compute_wall_stress(const Values& pressure, Eigen::VectorXd& stress) const;
 
   const FilmGrid& grid() const { return *grid_; }
   const FilmStepInput& input() const { return input_; }
 
  private:
-  Eigen::VectorXd compute_drive(const Eigen::VectorXd& pressure) const;
+  void compute_drive(const Values& pressure, Eigen::VectorXd& drive) const;
+  void set_leaks(const Values& flux_guess);
 
   const FilmGrid* grid_;
   PressureOperator pressure_operator_;
   FlowLaw law_;
   FilmStepInput input_;
+  Eigen::VectorXd thickness_;  ///< of the guess [m] (n_cells)
   Eigen::VectorXd edge_thickness_;
+  Eigen::VectorXd drive_;  ///< D, of the last call that needed it [Pa] (n_edges)
   Eigen::VectorXd leak_conductance_;
   bool matrix_is_current_ = false;
   const Eigen::SparseMatrix<double>* matrix_ = nullptr;

@@ -20,20 +20,23 @@ namespace lipofill::film {
 /// rate = stress/viscous + d(stress)/dt/G, s the friction of the last step. F is the gradient of a convex function of
 /// D: its tangent is symmetric and positive semi-definite. Flow below the yield stress is zero, not small.
 ///
-/// Checked by tests/unit/film/rheology_test.cc.
+/// After the first step nothing is allocated. Checked by tests/unit/film/rheology_test.cc.
 class FlowLaw {
  public:
   explicit FlowLaw(const FilmGrid& grid) : grid_(&grid) {}
 
+  /// What stays as it is through a step. `metric` must outlive the step.
+  void begin_step(const FilmMetric& metric, const Fat& fat, double dt);
+
   /// @param edge_thickness  h [m] (n_edges), 0: dry or closed
   /// @param wall_stress     T = h s / 2 of the last step [Pa m] (n_edges), elastic fat only
-  void prepare(const FilmMetric& metric, const Fat& fat, const Eigen::VectorXd& edge_thickness,
-               const Eigen::VectorXd& wall_stress, double dt);
+  void set_thickness(const Eigen::VectorXd& edge_thickness, const Eigen::VectorXd& wall_stress);
 
   bool is_linear() const { return fat_.is_newtonian(); }
-  Eigen::VectorXd compute_flux(const Eigen::VectorXd& drive) const;
+  /// Adds F(D) to `flux` (n_edges).
+  void add_flux(const Eigen::VectorXd& drive, Eigen::Ref<Eigen::VectorXd> flux);
   /// dF/dD as forms [m3/(Pa s)]. Where nothing flows it is kept just above zero, so that a pressure follows.
-  QuadrantForms linearise(const Eigen::VectorXd& drive) const;
+  const QuadrantForms& linearise(const Eigen::VectorXd& drive);
 
  private:
   /// A quadrant's reference form, scale and thickness, for the flow factor.
@@ -43,13 +46,24 @@ class FlowLaw {
     double thickness = 0.0;
   };
   struct Response;
-  Response respond(const Quadrant& quadrant, const QuadrantEdges& edges, const Eigen::VectorXd& drive) const;
+  Response respond(const Quadrant& quadrant, const QuadrantEdges& edges, const double* drive) const;
+  void set_quadrants(const Eigen::VectorXd& edge_thickness);
+  void set_elastic_part(const Eigen::VectorXd& edge_thickness, const Eigen::VectorXd& wall_stress);
+  template <typename OfThickness>
+  void scale_by(const Eigen::VectorXd& edge_thickness, OfThickness conductance, QuadrantForms& forms);
 
   const FilmGrid* grid_;
+  const FilmMetric* metric_ = nullptr;
   Fat fat_;
-  QuadrantForms linear_;                            ///< Newtonian: W(k); else the elastic part
-  std::vector<std::array<Quadrant, 4>> quadrants_;  ///< empty: Newtonian
+  double dt_ = 0.0;
+  QuadrantForms unit_;                              ///< W(1) of the step's metric
+  QuadrantForms linear_;                            ///< with inertia: W(k); else the elastic part
+  QuadrantForms reference_;                         ///< W(h^3/(12 K)), without inertia
+  QuadrantForms tangent_;                           ///< without inertia
+  std::vector<std::array<Quadrant, 4>> quadrants_;  ///< empty: with inertia
   Eigen::VectorXd elastic_start_;                   ///< s [Pa], 0 without elasticity
+  Eigen::VectorXd beyond_start_;                    ///< D - s [Pa]
+  Eigen::VectorXd conductance_, root_;
 };
 
 }  // namespace lipofill::film

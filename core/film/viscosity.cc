@@ -1,26 +1,15 @@
 #include "core/film/viscosity.h"
 
 #include <algorithm>
-#include <vector>
-
-#include "core/film/edge_operators.h"
 
 namespace lipofill::film {
 namespace {
 
 /// Keeps the system regular on dry edges, whose velocity is set to zero afterwards [m].
 constexpr double kThinnest = 1e-7;
-
-Eigen::SparseMatrix<double> make_outflow_matrix(const FilmGrid& grid) {
-  std::vector<Eigen::Triplet<double>> triplets;
-  for (int e = 0; e < grid.n_edges(); ++e) {
-    triplets.emplace_back(grid.edges[e].left, e, 1.0);
-    triplets.emplace_back(grid.edges[e].right, e, -1.0);
-  }
-  Eigen::SparseMatrix<double> matrix(grid.n_cells(), grid.n_edges());
-  matrix.setFromTriplets(triplets.begin(), triplets.end());
-  return matrix;
-}
+constexpr double kTolerance = 1e-13;
+/// Conjugate gradients end after as many iterations as there are unknowns but for rounding.
+constexpr int kMaxIterationsAnEdge = 4;
 
 /// Cells around vertex (i, j), by (side of xi) + 2 (side of eta); -1 where there is none.
 std::array<int, 4> cells_around(const FilmGrid& grid, int i, int j) {
@@ -34,71 +23,139 @@ std::array<int, 4> cells_around(const FilmGrid& grid, int i, int j) {
   return cells;
 }
 
-Eigen::SparseMatrix<double> make_circulation_matrix(const FilmGrid& grid) {
-  std::vector<Eigen::Triplet<double>> triplets;
+}  // namespace
+
+ImplicitViscosity::ImplicitViscosity(const FilmGrid& grid) {
   for (int j = 0; j <= grid.n_eta; ++j) {
     for (int i = 0; i <= grid.n_xi; ++i) {
       const std::array<int, 4> cells = cells_around(grid, i, j);
-      if (std::min({cells[0], cells[1], cells[2], cells[3]}) < 0) continue;
-      const int low = grid.edge_of_side[cells[0]][kHighXi];
-      const int right = grid.edge_of_side[cells[1]][kHighEta];
-      const int high = grid.edge_of_side[cells[2]][kHighXi];
-      const int left = grid.edge_of_side[cells[0]][kHighEta];
-      if (std::min({low, right, high, left}) < 0) continue;
-      const int vertex = grid.vertex(i, j);
-      triplets.emplace_back(vertex, low, 1.0);
-      triplets.emplace_back(vertex, right, 1.0);
-      triplets.emplace_back(vertex, high, -1.0);
-      triplets.emplace_back(vertex, left, -1.0);
+      if (*std::min_element(cells.begin(), cells.end()) < 0) continue;
+      const InnerVertex vertex{cells,
+                               grid.edge_of_side[cells[0]][kHighXi],
+                               grid.edge_of_side[cells[1]][kHighEta],
+                               grid.edge_of_side[cells[2]][kHighXi],
+                               grid.edge_of_side[cells[0]][kHighEta],
+                               0.0};
+      if (std::min({vertex.low, vertex.right, vertex.high, vertex.left}) >= 0) vertices_.push_back(vertex);
     }
   }
-  Eigen::SparseMatrix<double> matrix(grid.n_vertices(), grid.n_edges());
-  matrix.setFromTriplets(triplets.begin(), triplets.end());
-  return matrix;
 }
-
-/// Thickness over area of the dual cell of every vertex, the mean of the cells around it.
-Eigen::VectorXd vertex_thickness_over_area(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& h) {
-  Eigen::VectorXd area = Eigen::VectorXd::Zero(grid.n_vertices());
-  Eigen::VectorXd volume = Eigen::VectorXd::Zero(grid.n_vertices());
-  for (int cell = 0; cell < grid.n_cells(); ++cell) {
-    const int slot = grid.slot_of_cell[cell];
-    for (int q = 0; q < 4; ++q) {
-      const int vertex = grid.vertex(grid.slot_i(slot) + (q & 1), grid.slot_j(slot) + (q >> 1));
-      const double quarter = 0.25 * metric.quadrants[cell][q].sqrt_g;
-      area[vertex] += quarter;
-      volume[vertex] += quarter * h[cell];
-    }
-  }
-  return (area.array() > 0.0).select(volume.array() / area.array().square().max(1e-300), 0.0);
-}
-
-}  // namespace
-
-ImplicitViscosity::ImplicitViscosity(const FilmGrid& grid)
-    : outflow_(make_outflow_matrix(grid)), circulation_(make_circulation_matrix(grid)) {}
 
 Eigen::VectorXd ImplicitViscosity::advance(const FilmGrid& grid, const FilmMetric& metric, const Fat& fat,
                                            const Eigen::VectorXd& cell_thickness, const Eigen::VectorXd& edge_thickness,
                                            const Eigen::VectorXd& velocity, double dt) {
-  const Eigen::VectorXd h = edge_thickness.cwiseMax(kThinnest);
-  Eigen::VectorXd damped(h.size());
-  for (int e = 0; e < h.size(); ++e) damped[e] = h[e] * (1.0 + dt * compute_friction_rate(fat, h[e]));
+  Eigen::VectorXd next;
+  advance(grid, metric, fat, cell_thickness, edge_thickness, velocity, dt, next);
+  return next;
+}
 
-  using Sparse = Eigen::SparseMatrix<double>;
-  const Sparse unit_mass = assemble_velocity_mass(grid, metric, Eigen::VectorXd::Ones(grid.n_edges()));
-  const Sparse mass = assemble_velocity_mass(grid, metric, h);
-  const Sparse curl = circulation_ * unit_mass;
-  const Eigen::VectorXd over_area = cell_thickness.cwiseQuotient(metric.area);
-  const Eigen::VectorXd over_vertex_area = vertex_thickness_over_area(grid, metric, cell_thickness);
+void ImplicitViscosity::advance(const FilmGrid& grid, const FilmMetric& metric, const Fat& fat,
+                                const Eigen::VectorXd& cell_thickness, const Eigen::VectorXd& edge_thickness,
+                                const Eigen::VectorXd& velocity, double dt, Eigen::VectorXd& next) {
+  thickness_ = edge_thickness.cwiseMax(kThinnest);
+  damped_thickness_.resize(thickness_.size());
+  next.resize(thickness_.size());
+  for (Eigen::Index e = 0; e < thickness_.size(); ++e) {
+    const double damping = 1.0 + dt * compute_friction_rate(fat, thickness_[e]);
+    damped_thickness_[e] = thickness_[e] * damping;
+    next[e] = velocity[e] / damping;
+  }
+  set_system(grid, metric, fat, cell_thickness, dt);
+  right_side_.setZero(grid.n_edges());
+  add_flux_of_forms(grid, mass_, velocity, right_side_);
+  solve(grid, right_side_, next);
+  next = (edge_thickness.array() > 0.0).select(next, 0.0);
+}
+
+void ImplicitViscosity::set_system(const FilmGrid& grid, const FilmMetric& metric, const Fat& fat,
+                                   const Eigen::VectorXd& cell_thickness, double dt) {
+  compute_unit_mass_forms(grid, metric, unit_mass_);
+  scale_forms(grid, unit_mass_, thickness_, root_, mass_);
+  scale_forms(grid, unit_mass_, damped_thickness_, root_, damped_mass_);
   const double scale = dt * fat.viscosity / fat.density;
-  Sparse system = assemble_velocity_mass(grid, metric, damped);
-  system += scale * Sparse(outflow_.transpose() * over_area.asDiagonal() * outflow_);
-  system += scale * Sparse(curl.transpose() * over_vertex_area.asDiagonal() * curl);
+  over_area_ = scale * cell_thickness.cwiseQuotient(metric.area);
+  for (InnerVertex& vertex : vertices_) {
+    double area = 0.0;
+    double volume = 0.0;
+    for (int q = 0; q < 4; ++q) {
+      const int cell = vertex.cells[q];
+      const double quarter = 0.25 * metric.quadrants[cell][3 - q].sqrt_g;
+      area += quarter;
+      volume += quarter * cell_thickness[cell];
+    }
+    vertex.thickness_over_area = scale * volume / (area * area);
+  }
+  set_diagonal(grid);
+}
 
-  const Eigen::SimplicialLDLT<Sparse> factor(system);
-  Eigen::VectorXd next = factor.solve(mass * velocity);
-  return (edge_thickness.array() > 0.0).select(next, 0.0);
+/// Of M(1), in the last term, the diagonal alone.
+void ImplicitViscosity::set_diagonal(const FilmGrid& grid) {
+  diagonal_.setZero(grid.n_edges());
+  momentum_.setZero(grid.n_edges());
+  double* const of_system = diagonal_.data();
+  double* const of_mass = momentum_.data();
+  for (int cell = 0; cell < grid.n_cells(); ++cell) {
+    for (int q = 0; q < 4; ++q) {
+      const QuadrantEdges edges = quadrant_edges(grid, cell, q);
+      if (edges.xi >= 0) of_system[edges.xi] += damped_mass_[cell][q].w11;
+      if (edges.xi >= 0) of_mass[edges.xi] += unit_mass_[cell][q].w11;
+      if (edges.eta >= 0) of_system[edges.eta] += damped_mass_[cell][q].w22;
+      if (edges.eta >= 0) of_mass[edges.eta] += unit_mass_[cell][q].w22;
+    }
+  }
+  for (int e = 0; e < grid.n_edges(); ++e) {
+    of_system[e] += over_area_[grid.edges[e].left] + over_area_[grid.edges[e].right];
+  }
+  for (const InnerVertex& vertex : vertices_) {
+    for (const int e : {vertex.low, vertex.right, vertex.high, vertex.left}) {
+      of_system[e] += vertex.thickness_over_area * of_mass[e] * of_mass[e];
+    }
+  }
+}
+
+void ImplicitViscosity::multiply(const FilmGrid& grid, const Eigen::VectorXd& u, Eigen::VectorXd& product) {
+  product.setZero(grid.n_edges());
+  add_flux_of_forms(grid, damped_mass_, u, product);
+
+  compute_outflow(grid, u, outflow_);
+  outflow_.array() *= over_area_.array();
+  for (int e = 0; e < grid.n_edges(); ++e) {
+    product.data()[e] += outflow_.data()[grid.edges[e].left] - outflow_.data()[grid.edges[e].right];
+  }
+
+  momentum_.setZero(grid.n_edges());
+  add_flux_of_forms(grid, unit_mass_, u, momentum_);
+  curl_.setZero(grid.n_edges());
+  double* const curl = curl_.data();
+  for (const InnerVertex& v : vertices_) {
+    const double* m = momentum_.data();
+    const double circulation = v.thickness_over_area * (m[v.low] + m[v.right] - m[v.high] - m[v.left]);
+    curl[v.low] += circulation;
+    curl[v.right] += circulation;
+    curl[v.high] -= circulation;
+    curl[v.left] -= circulation;
+  }
+  add_flux_of_forms(grid, unit_mass_, curl_, product);
+}
+
+/// Improves `u`.
+void ImplicitViscosity::solve(const FilmGrid& grid, const Eigen::VectorXd& right_side, Eigen::VectorXd& u) {
+  multiply(grid, u, product_);
+  residual_ = right_side - product_;
+  scaled_ = residual_.cwiseQuotient(diagonal_);
+  direction_ = scaled_;
+  double error = residual_.dot(scaled_);
+  const double target = kTolerance * kTolerance * right_side.cwiseProduct(right_side).cwiseQuotient(diagonal_).sum();
+  for (int k = 0; k < kMaxIterationsAnEdge * grid.n_edges() && error > target; ++k) {
+    multiply(grid, direction_, product_);
+    const double length = error / direction_.dot(product_);
+    u += length * direction_;
+    residual_ -= length * product_;
+    scaled_ = residual_.cwiseQuotient(diagonal_);
+    const double last = error;
+    error = residual_.dot(scaled_);
+    direction_ = scaled_ + (error / last) * direction_;
+  }
 }
 
 }  // namespace lipofill::film

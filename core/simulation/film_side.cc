@@ -152,8 +152,8 @@ void CoupledStep::finish_films(const SimulationState& from, double dt, const cou
     FilmState& film = next.films[f];
     film.pressure = solution.pressure.segment(cell_offset_[f], grid.n_cells());
     film.volume = solution.volume.segment(cell_offset_[f], grid.n_cells());
-    film.velocity = projection.compute_velocity(solution.flux[f]);
-    film.wall_stress = projection.compute_wall_stress(film.pressure);
+    projection.compute_velocity(solution.flux[f], film.velocity);
+    projection.compute_wall_stress(film.pressure, film.wall_stress);
     film.volume_rate = (film.volume - from.films[f].volume) / dt;
     const double injection_work = film.pressure.dot(projection.input().injected);
     next.injection_work += injection_work;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "core/film/advection.h"
@@ -73,6 +74,68 @@ TEST(Viscosity, NeverAddsEnergyHoweverLargeTheStep) {
   const Eigen::VectorXd edges = Eigen::VectorXd::Constant(box.grid.n_edges(), 1e-3);
   for (const double dt : {1e-3, 1.0, 1e3}) {
     EXPECT_LE(viscosity.advance(box.grid, box.metric, {15.0, 920.0, true}, cells, edges, u, dt).norm(), u.norm());
+  }
+}
+
+/// M(w) of the docstring of compute_unit_mass_forms, quadrant by quadrant.
+Eigen::MatrixXd make_mass(const Box& box, const Eigen::VectorXd& w) {
+  Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(w.size(), w.size());
+  for (int cell = 0; cell < box.grid.n_cells(); ++cell) {
+    for (int q = 0; q < 4; ++q) {
+      const QuadrantMetric& g = box.metric.quadrants[cell][q];
+      const auto [a, b] = quadrant_edges(box.grid, cell, q);
+      if (a >= 0) mass(a, a) += 0.25 / g.sqrt_g * w[a] * g.g11;
+      if (b >= 0) mass(b, b) += 0.25 / g.sqrt_g * w[b] * g.g22;
+      if (a < 0 || b < 0) continue;
+      mass(a, b) += 0.25 / g.sqrt_g * std::sqrt(w[a] * w[b]) * g.g12;
+      mass(b, a) += 0.25 / g.sqrt_g * std::sqrt(w[a] * w[b]) * g.g12;
+    }
+  }
+  return mass;
+}
+
+/// D^T (h/a) D + M(1) K^T (h/a_v) K M(1) for one thickness h, out of the closed forms of one square cell: its sides sum
+/// to the outflow, those around a vertex to the circulation.
+Eigen::MatrixXd make_diffusion(const Box& box, double h) {
+  const int n = box.grid.n_xi;
+  const double area = box.metric.area[0];
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(box.grid.n_edges(), box.grid.n_edges());
+  Eigen::MatrixXd outflow = Eigen::MatrixXd::Zero(n * n, box.grid.n_edges());
+  Eigen::MatrixXd circulation = Eigen::MatrixXd::Zero((n - 1) * (n - 1), box.grid.n_edges());
+  for (int e = 0; e < box.grid.n_edges(); ++e) outflow.col(e) = compute_outflow(box.grid, identity.col(e));
+  for (int j = 0; j + 1 < n; ++j) {
+    for (int i = 0; i + 1 < n; ++i) {
+      const auto side = [&](int k, int l, Side s) { return box.grid.edge_of_side[l * n + k][s]; };
+      auto around = circulation.row(j * (n - 1) + i);
+      around[side(i, j, kHighXi)] = around[side(i + 1, j, kHighEta)] = 1.0;
+      around[side(i, j + 1, kHighXi)] = around[side(i, j, kHighEta)] = -1.0;
+    }
+  }
+  const Eigen::MatrixXd curl = circulation * make_mass(box, Eigen::VectorXd::Ones(box.grid.n_edges()));
+  return h / area * (outflow.transpose() * outflow + curl.transpose() * curl);
+}
+
+/// The system of the docstring solved by a dense factorisation, with and without friction, short and long steps.
+TEST(Viscosity, SolvesTheSystemOfItsDocstring) {
+  const Box box(7, 0.02);
+  const double h = 1e-3;
+  ImplicitViscosity viscosity(box.grid);
+  const Eigen::VectorXd cells = Eigen::VectorXd::Constant(box.grid.n_cells(), h);
+  Eigen::VectorXd edges = Eigen::VectorXd::LinSpaced(box.grid.n_edges(), 0.8 * h, 1.2 * h);
+  edges[17] = 0.0;
+  const Eigen::VectorXd filled = edges.cwiseMax(1e-7);
+  const Eigen::VectorXd u = Eigen::VectorXd::Random(box.grid.n_edges());
+  for (const bool wall_friction : {true, false}) {
+    for (const double dt : {1e-3, 10.0}) {
+      const Fat fat{15.0, 920.0, wall_friction};
+      Eigen::VectorXd damped = filled;
+      for (double& thickness : damped) thickness *= 1.0 + dt * compute_friction_rate(fat, thickness);
+      const Eigen::MatrixXd system = make_mass(box, damped) + dt * fat.viscosity / fat.density * make_diffusion(box, h);
+      Eigen::VectorXd expected = system.ldlt().solve(make_mass(box, filled) * u);
+      expected[17] = 0.0;
+      const Eigen::VectorXd next = viscosity.advance(box.grid, box.metric, fat, cells, edges, u, dt);
+      EXPECT_LT((next - expected).norm(), 1e-10 * expected.norm()) << wall_friction << " " << dt;
+    }
   }
 }
 

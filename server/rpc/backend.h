@@ -41,8 +41,8 @@ struct Backend {
   Courier courier;
   /// Last: their threads use the others.
   WorkerPool workers;
-  TaskPool calls{2, 256};
-  TaskPool builds{2, 64};
+  TaskPool calls{"calls", 2, 256};
+  TaskPool builds{"builds", 2, 64};
 
   /// The model of a record, from memory or built again from its specification and scan. DATA_LOSS when what is built is
   /// not what the record says.

@@ -1,5 +1,7 @@
 #include "server/rpc/courier.h"
 
+#include "server/sessions/thread_name.h"
+
 namespace lipofill::server {
 
 Courier::Courier() : thread_([this] { work(); }) {}
@@ -22,6 +24,7 @@ void Courier::wake(std::weak_ptr<Stream> stream) {
 }
 
 void Courier::work() {
+  name_this_thread("courier");
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return stopping_ || !queue_.empty(); });

@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/sessions/identifiers.h"
+#include "server/sessions/thread_name.h"
 
 namespace lipofill::server {
 namespace {
@@ -180,6 +181,7 @@ void Operations::notify(std::unique_lock<std::mutex> lock) {
 }
 
 void Operations::serve_timeouts() {
+  name_this_thread("operations");
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     const auto next = std::min_element(waiters_.begin(), waiters_.end(),

@@ -1,9 +1,16 @@
 #include "server/sessions/task_pool.h"
 
+#include "server/sessions/thread_name.h"
+
 namespace lipofill::server {
 
-TaskPool::TaskPool(int n_threads, size_t max_queued) : max_queued_(max_queued) {
-  for (int i = 0; i < n_threads; ++i) threads_.emplace_back([this] { work(); });
+TaskPool::TaskPool(const std::string& name, int n_threads, size_t max_queued) : max_queued_(max_queued) {
+  for (int i = 0; i < n_threads; ++i) {
+    threads_.emplace_back([this, own = name + "/" + std::to_string(i)] {
+      name_this_thread(own);
+      work();
+    });
+  }
 }
 
 TaskPool::~TaskPool() {

@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace lipofill::server {
 /// distances.
 class TaskPool {
  public:
-  TaskPool(int n_threads, size_t max_queued);
+  TaskPool(const std::string& name, int n_threads, size_t max_queued);
   ~TaskPool();
 
   /// False when too much waits already or the pool has stopped. The work must not throw.

@@ -1,11 +1,14 @@
 #include "server/sessions/worker_pool.h"
 
 #include <algorithm>
+#include <string>
+
+#include "server/sessions/thread_name.h"
 
 namespace lipofill::server {
 
 WorkerPool::WorkerPool(int n_workers) : n_workers_(std::max(1, n_workers)) {
-  for (int i = 0; i < n_workers_; ++i) threads_.emplace_back([this] { work(); });
+  for (int i = 0; i < n_workers_; ++i) threads_.emplace_back([this, i] { work(i); });
 }
 
 WorkerPool::~WorkerPool() {
@@ -41,7 +44,8 @@ void WorkerPool::move_due_tasks(Clock::time_point now) {
   }
 }
 
-void WorkerPool::work() {
+void WorkerPool::work(int index) {
+  name_this_thread("worker/" + std::to_string(index));
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     move_due_tasks(Clock::now());

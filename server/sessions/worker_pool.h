@@ -41,7 +41,7 @@ class WorkerPool {
   int n_workers() const { return n_workers_; }
 
  private:
-  void work();
+  void work(int index);
   void move_due_tasks(Clock::time_point now);
 
   const int n_workers_;

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -49,8 +50,10 @@ int exit_code_of(int status) {
 DaemonProcess::DaemonProcess(const std::string& data, const std::vector<std::string>& arguments) {
   const std::string port_file = data + ".port";
   std::filesystem::remove(port_file);
-  std::vector<std::string> all = {"--listen",    "127.0.0.1:0", "--data",    data,
-                                  "--port-file", port_file,     "--workers", "2"};
+  std::vector<std::string> all = {"--listen", "127.0.0.1:0", "--data", data, "--port-file", port_file};
+  if (std::find(arguments.begin(), arguments.end(), "--workers") == arguments.end()) {
+    all.insert(all.end(), {"--workers", "2"});
+  }
   all.insert(all.end(), arguments.begin(), arguments.end());
   process_ = start(all, data + ".log");
   const Clock::time_point deadline = Clock::now() + std::chrono::seconds(30);

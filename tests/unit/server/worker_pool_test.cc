@@ -96,7 +96,7 @@ TEST(TaskPool, BoundsItsQueueAndFinishesIt) {
   std::promise<void> open;
   std::promise<void> begun;
   std::atomic<int> ran = 0;
-  TaskPool pool(1, 2);
+  TaskPool pool("test", 1, 2);
   ASSERT_TRUE(pool.run([&] {
     begun.set_value();
     open.get_future().wait();

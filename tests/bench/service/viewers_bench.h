@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "client/cpp/plan_file.h"
+
+namespace lipofill::bench {
+
+/// One simulation on one worker, watched by a number of viewers, each on a connection of its own.
+struct ViewersRow {
+  int viewers = 0;
+  double steps = 0.0;
+  double wall_s = 0.0;
+  double worker_cpu_s = 0.0;     ///< of the thread that steps
+  double transport_cpu_s = 0.0;  ///< of the daemon's other threads: encoding and sending
+  double frames = 0.0;           ///< seen by a viewer, mean
+  double sent_mb = 0.0;          ///< to all viewers
+};
+
+/// Runs the plan for a simulated time [s] with each number of viewers in turn, `rounds` times over, on one daemon. A
+/// row a number of viewers: the run with the median of worker_cpu_s. Viewers watch the skin, the scan and the films,
+/// LATEST, every step.
+absl::StatusOr<std::vector<ViewersRow>> measure_viewers(const client::PlanFile& plan, const std::vector<int>& viewers,
+                                                        double simulated_s, int rounds);
+
+}  // namespace lipofill::bench

@@ -75,11 +75,10 @@ absl::StatusOr<ViewersRow> run_once(ServedPlan& served, const std::string& id, i
 
   const ProcessFigures before = read_process(served.daemon());
   const Clock::time_point begin = Clock::now();
-  absl::Status status = served.start(id);
+  const absl::Status started = served.start(id);
   // Without a start there is no end either: deleting the simulation ends the streams.
-  if (!status.ok()) served.remove(id).IgnoreError();
-  absl::StatusOr<v1::Simulation> end = status;
-  if (status.ok()) end = served.await_end(id);
+  if (!started.ok()) served.remove(id).IgnoreError();
+  const absl::StatusOr<v1::Simulation> end = served.await_end(id);
   ViewersRow row;
   row.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
   for (Viewer& viewer : viewers) viewer.join();

@@ -1,0 +1,67 @@
+#include "tests/bench/jaw_angle.h"
+
+#include <fstream>
+#include <sstream>
+
+#include "absl/strings/str_cat.h"
+#include "client/cpp/plan_file.h"
+#include "core/geometry/surface_reader.h"
+#include "server/rpc/model_conversion.h"
+#include "server/rpc/simulation_conversion.h"
+
+namespace lipofill::bench {
+namespace {
+
+/// The plan with what the daemon would have put there: the scan and the model are passed on as they are.
+absl::StatusOr<client::PlanFile> load_sample_plan() {
+  auto plan = client::load_plan(LIPOFILL_EXAMPLES "/plans/jaw_angle.json");
+  if (!plan.ok()) return plan;
+  if (const absl::Status status = client::load_plan_landmarks(&*plan); !status.ok()) return status;
+  plan->plan.mutable_model()->mutable_scan_region()->set_scan("patients/jaw/scans/face");
+  plan->plan.mutable_simulation()->set_model("patients/jaw/models/face");
+  return plan;
+}
+
+absl::StatusOr<geometry::SurfaceMesh> read_face(const client::PlanFile& plan) {
+  std::ifstream file(*plan.scan_file, std::ios::binary);
+  std::stringstream bytes;
+  bytes << file.rdbuf();
+  return geometry::read_surface(bytes.str(), geometry::SurfaceFormat::kObj, 1e-3);
+}
+
+absl::Status refine(int scale, simulation::FaceModelSpec& model, simulation::FilmSpec& film) {
+  if (scale == kTinyScale) {
+    model.n_xi /= 2;
+    model.n_eta = 2 * (model.n_eta / 4) + 1;
+    film.n_xi /= 2;
+    film.n_eta /= 2;
+    film.extent.eta_max = 2.0 * film.n_eta / model.n_eta;
+    return absl::OkStatus();
+  }
+  for (int k = 1; k * k <= scale; k *= 2) {
+    if (k * k != scale) continue;
+    for (int* n : {&model.n_xi, &model.n_eta, &film.n_xi, &film.n_eta}) *n *= k;
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(absl::StrCat("a scale of ", scale, ", must be 1, 4, 16 or 64"));
+}
+
+}  // namespace
+
+absl::StatusOr<JawAngle> make_jaw_angle(int scale) {
+  const auto plan = load_sample_plan();
+  if (!plan.ok()) return plan.status();
+  auto face = read_face(*plan);
+  if (!face.ok()) return face.status();
+  auto model_spec = server::to_face_model_spec(plan->plan.model());
+  if (!model_spec.ok()) return model_spec.status();
+  auto spec = server::to_simulation_spec(plan->plan.simulation());
+  if (!spec.ok()) return spec.status();
+  std::get<geometry::ScanRegionSpec>(model_spec->region).scan = *std::move(face);
+  if (const absl::Status status = refine(scale, *model_spec, spec->films[0]); !status.ok()) return status;
+  auto model = simulation::build_face_model(*model_spec, nullptr);
+  if (!model.ok()) return model.status();
+  return JawAngle{scale, *std::move(model), *std::move(spec)};
+}
+
+}  // namespace lipofill::bench

@@ -1,5 +1,6 @@
 #include "core/geometry/surface_locator.h"
 
+#include <SMP/Common/vtkSMPToolsAPI.h>
 #include <vtkCellArray.h>
 #include <vtkGenericCell.h>
 #include <vtkNew.h>
@@ -35,13 +36,21 @@ void fill(vtkPolyData* surface, const SurfaceMesh& mesh) {
   surface->SetPolys(cells);
 }
 
+/// VTK sorts the cells of the locator's boxes in parallel and by box alone: which of two triangles at the same distance
+/// is found would change from one build to the next. (vtkSMPTools.h, the front of this interface, is not C++20.)
+void build_in_one_thread(vtkStaticCellLocator* locator) {
+  [[maybe_unused]] static const bool is_sequential =
+      vtk::detail::smp::vtkSMPToolsAPI::GetInstance().SetBackend("Sequential");
+  locator->BuildLocator();
+}
+
 }  // namespace
 
 SurfaceLocator::SurfaceLocator(const SurfaceMesh& mesh) : impl_(std::make_unique<Impl>()) {
   fill(impl_->surface, mesh);
   impl_->locator->SetNumberOfCellsPerNode(1);
   impl_->locator->SetDataSet(impl_->surface);
-  impl_->locator->BuildLocator();
+  build_in_one_thread(impl_->locator);
 }
 
 SurfaceLocator::~SurfaceLocator() = default;

@@ -22,13 +22,22 @@ GapSystem::GapSystem(std::vector<GapVolume> films, int n_dofs) : films_(std::mov
   derivative_.makeCompressed();
 }
 
-void GapSystem::evaluate(const Eigen::Matrix3Xd& x) {
-  int offset = 0;
-  for (GapVolume& film : films_) {
-    film.evaluate(x);
+void GapSystem::collect_volume() {
+  Eigen::Index offset = 0;
+  for (const GapVolume& film : films_) {
     volume_.segment(offset, film.volume().size()) = film.volume();
-    offset += static_cast<int>(film.volume().size());
+    offset += film.volume().size();
   }
+}
+
+void GapSystem::evaluate_volume(const Eigen::Matrix3Xd& x) {
+  for (GapVolume& film : films_) film.evaluate_volume(x);
+  collect_volume();
+}
+
+void GapSystem::evaluate(const Eigen::Matrix3Xd& x) {
+  for (GapVolume& film : films_) film.evaluate(x);
+  collect_volume();
   // Rows of a column come film by film, so that each film's column is one run of it.
   double* next = derivative_.valuePtr();
   for (int column = 0; column < derivative_.cols(); ++column) {

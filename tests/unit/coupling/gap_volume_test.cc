@@ -113,6 +113,29 @@ TEST(GapVolume, DerivativeIsThatOfTheVolume) {
   EXPECT_LT(worst, 1e-9 * b.cwiseAbs().maxCoeff() + 1e-13);
 }
 
+TEST(GapVolume, VolumeAloneHasTheSameBits) {
+  TwoWalls walls(6, 6, 0.06, 0.06);
+  shake(walls.positions, 1e-3);
+  GapVolume both(walls.grid, walls.walls, full_film(3, 3), walls.dofs, walls.n_dofs());
+  GapVolume alone(both.geometry());
+  both.evaluate(walls.positions);
+  alone.evaluate_volume(walls.positions);
+  EXPECT_EQ(both.volume(), alone.volume());
+  EXPECT_GT(both.derivative().norm(), 0.0);
+  EXPECT_EQ(alone.derivative().norm(), 0.0);
+}
+
+/// A cell whose walls are bonded at every node gives way to nothing, to the last bit: that is how it is found.
+TEST(GapVolume, BondedWallsCannotPart) {
+  TwoWalls walls(4, 4, 0.04, 0.04);
+  walls.walls.inner = walls.walls.outer;
+  shake(walls.positions, 1e-3);
+  GapVolume gap(walls.grid, walls.walls, full_film(3, 3), walls.dofs, walls.n_dofs());
+  gap.evaluate(walls.positions);
+  EXPECT_EQ(gap.volume().norm(), 0.0);
+  EXPECT_EQ(gap.derivative().norm(), 0.0);
+}
+
 TEST(GapVolume, PressureForceHasNoResultantOnAClosedGap) {
   // Action equals reaction: moving everything together changes no gap.
   TwoWalls walls(6, 6, 0.06, 0.06);

@@ -21,6 +21,9 @@ if(LIPOFILL_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)
 endif()
+if(LIPOFILL_TESTS AND LIPOFILL_BENCHMARKS)
+  find_package(benchmark REQUIRED)
+endif()
 
 # CHOLMOD's Debian package has no CMake file. Its BLAS must be OpenBLAS with POSIX threads, told to use one thread (sessions run
 # in parallel, see core/coupling/coupled_factor.cc): Debian's serial OpenBLAS is built without locks and, called from two

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/cpp/plan_file.h"
@@ -48,20 +49,26 @@ absl::Status refine(int scale, simulation::FaceModelSpec& model, simulation::Fil
 
 }  // namespace
 
-absl::StatusOr<JawAngle> make_jaw_angle(int scale) {
+absl::StatusOr<SampleFace> load_sample_face(int scale) {
   const auto plan = load_sample_plan();
   if (!plan.ok()) return plan.status();
   auto face = read_face(*plan);
   if (!face.ok()) return face.status();
-  auto model_spec = server::to_face_model_spec(plan->plan.model());
-  if (!model_spec.ok()) return model_spec.status();
+  auto model = server::to_face_model_spec(plan->plan.model());
+  if (!model.ok()) return model.status();
   auto spec = server::to_simulation_spec(plan->plan.simulation());
   if (!spec.ok()) return spec.status();
-  std::get<geometry::ScanRegionSpec>(model_spec->region).scan = *std::move(face);
-  if (const absl::Status status = refine(scale, *model_spec, spec->films[0]); !status.ok()) return status;
-  auto model = simulation::build_face_model(*model_spec, nullptr);
+  std::get<geometry::ScanRegionSpec>(model->region).scan = *std::move(face);
+  if (const absl::Status status = refine(scale, *model, spec->films[0]); !status.ok()) return status;
+  return SampleFace{*std::move(model), *std::move(spec)};
+}
+
+absl::StatusOr<JawAngle> make_jaw_angle(int scale) {
+  auto face = load_sample_face(scale);
+  if (!face.ok()) return face.status();
+  auto model = simulation::build_face_model(face->model, nullptr);
   if (!model.ok()) return model.status();
-  return JawAngle{scale, *std::move(model), *std::move(spec)};
+  return JawAngle{scale, *std::move(model), std::move(face->simulation)};
 }
 
 }  // namespace lipofill::bench

@@ -1,6 +1,8 @@
 #include "tests/bench/linear_step.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 namespace lipofill::bench {
@@ -55,27 +57,45 @@ void StepParts::assemble() {
   gaps_->evaluate(positions_);
 }
 
-LinearStep StepParts::linear_step() {
-  assemble();
+void StepParts::move_to_wave() {
+  constexpr double kWaveLength = 0.03, kHeight = 1e-3, kThickness = 1e-3;  // m
+  constexpr double kPressure = 500.0;                                      // Pa
+  const auto wave = [](const Eigen::Vector3d& x) { return std::sin(x.sum() * 2.0 * std::numbers::pi / kWaveLength); };
+  positions_ = tissue_->tissue.mesh().rest_positions;
+  for (auto x : positions_.colwise()) x += kHeight * wave(x) * Eigen::Vector3d::Ones();
+  const film::FilmMetric metric =
+      film::compute_film_metric(films_[0].grid, gaps_->film(0).mid_surface(tissue_->tissue.mesh().rest_positions));
+  thickness_.resize(metric.area.size());
+  for (Eigen::Index cell = 0; cell < thickness_.size(); ++cell) {
+    thickness_[cell] = kThickness * (1.0 + 0.5 * wave(metric.centre.col(cell)));
+  }
+  pressure_ = (kPressure / kThickness) * thickness_;
+}
+
+void StepParts::begin_film_step() {
   const film::FilmGrid& grid = films_[0].grid;
-  const film::FilmMetric metric = film::compute_film_metric(grid, gaps_->film(0).mid_surface(positions_));
-  const Eigen::VectorXd volume = thickness_.cwiseProduct(metric.area);
+  metric_ = film::compute_film_metric(grid, gaps_->film(0).mid_surface(positions_));
   film::FilmStepInput input;
-  input.metric = &metric;
+  input.metric = &metric_;
   input.fat = make_fat(jaw_.spec);
-  input.volume = volume;
+  input.volume = thickness_.cwiseProduct(metric_.area);
   input.injected.setZero(grid.n_cells());
   input.velocity.setZero(grid.n_edges());
   input.body_force.setZero(grid.n_edges());
   input.dt = jaw_.spec.step;
   projection_->begin_step(std::move(input));
-  projection_->set_thickness(volume, -film::compute_edge_difference(grid, pressure_));
+  projection_->set_thickness(projection_->input().volume, -film::compute_edge_difference(grid, pressure_));
+}
+
+LinearStep StepParts::linear_step() {
+  assemble();
+  begin_film_step();
   LinearStep step;
   step.s = tissue_->tissue.system_matrix();
   step.b = gaps_->derivative();
   step.j = projection_->linearise(pressure_);
   step.f = -tissue_->tissue.internal_force();
-  const Eigen::VectorXd no_pressure = Eigen::VectorXd::Zero(grid.n_cells());
+  const Eigen::VectorXd no_pressure = Eigen::VectorXd::Zero(step.n_cells());
   const double rest_thickness = films_[0].rest_thickness.at(0.5, 0.5);
   step.d = projection_->compute_volume(projection_->compute_flux(no_pressure)) - rest_thickness * rest_metric_.area -
            gaps_->volume();

@@ -41,6 +41,8 @@ class StepParts {
 
   /// Takes positions, thickness and pressure of the simulation's frame.
   void move_to(const simulation::Simulation& simulation);
+  /// The tissue waved by a millimetre over a film of half a millimetre or more: work like that of a run, at no cost.
+  void move_to_wave();
 
   /// The element work of a step: forces, stiffness and gap where move_to() has put the tissue, for steps of the plan.
   void assemble();
@@ -48,8 +50,18 @@ class StepParts {
   /// The step that follows from there, from rest.
   LinearStep linear_step();
 
+  solid::Tissue& tissue() { return tissue_->tissue; }
+  coupling::GapSystem& gaps() { return *gaps_; }
+  /// In the midst of the step that linear_step() is of.
+  film::FilmProjection& projection() { return *projection_; }
+  const film::FilmMetric& metric() const { return metric_; }
+  const Eigen::Matrix3Xd& positions() const { return positions_; }
+  const Eigen::VectorXd& thickness() const { return thickness_; }
+  const Eigen::VectorXd& pressure() const { return pressure_; }
+
  private:
   explicit StepParts(const JawAngle& jaw) : jaw_(jaw) {}
+  void begin_film_step();
 
   const JawAngle& jaw_;
   std::vector<simulation::FilmLayout> films_;
@@ -57,6 +69,7 @@ class StepParts {
   std::unique_ptr<coupling::GapSystem> gaps_;
   std::unique_ptr<film::FilmProjection> projection_;
   film::FilmMetric rest_metric_;
+  film::FilmMetric metric_;  ///< where the tissue is
   Eigen::Matrix3Xd positions_;
   Eigen::VectorXd thickness_;  ///< [m] (n_cells)
   Eigen::VectorXd pressure_;   ///< [Pa] (n_cells)

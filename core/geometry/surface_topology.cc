@@ -28,18 +28,36 @@ absl::Status check_indices(const char* field, const SurfaceMesh& mesh) {
   return absl::OkStatus();
 }
 
-std::vector<EdgeUse> sort_edge_uses(const SurfaceMesh& mesh) {
-  std::vector<EdgeUse> uses;
-  uses.reserve(mesh.triangles.size() * 3);
+namespace {
+
+template <typename Visit>
+void for_edge_uses(const SurfaceMesh& mesh, const Visit& visit) {
   for (int t = 0; t < mesh.n_triangles(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const auto [low, high] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
-      uses.push_back({low, high, t, k});
+      visit(EdgeUse{low, high, t, k});
     }
   }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-    return std::tie(a.low, a.high, a.triangle, a.side) < std::tie(b.low, b.high, b.triangle, b.side);
-  });
+}
+
+}  // namespace
+
+// Counted into place by their lower vertex; the few of one vertex are then sorted.
+std::vector<EdgeUse> sort_edge_uses(const SurfaceMesh& mesh) {
+  std::vector<size_t> end(static_cast<size_t>(mesh.n_vertices()) + 1, 0);
+  for_edge_uses(mesh, [&](const EdgeUse& use) { ++end[use.low + 1]; });
+  for (size_t v = 1; v < end.size(); ++v) end[v] += end[v - 1];
+  std::vector<EdgeUse> uses(mesh.triangles.size() * 3);
+  // From the begin of its vertex each count moves to the end.
+  for_edge_uses(mesh, [&](const EdgeUse& use) { uses[end[use.low]++] = use; });
+  size_t begin = 0;
+  for (int v = 0; v < mesh.n_vertices(); ++v) {
+    std::sort(uses.begin() + static_cast<long>(begin), uses.begin() + static_cast<long>(end[v]),
+              [](const EdgeUse& a, const EdgeUse& b) {
+                return std::tie(a.high, a.triangle, a.side) < std::tie(b.high, b.triangle, b.side);
+              });
+    begin = end[v];
+  }
   return uses;
 }
 

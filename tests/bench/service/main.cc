@@ -25,6 +25,7 @@ struct Options {
   int rounds = 3;
   int refinements = 0;
   std::string format = "obj";
+  bool in_process_only = false;
 };
 
 absl::StatusOr<Json> run_sessions(const client::PlanFile& plan, const Options& options) {
@@ -85,6 +86,7 @@ Json show(const char* what, const StartupTable& table) {
   return {{"triangles", table.triangles},
           {"first_frame_ms", table.first_frame_ms()},
           {"phases", phases},
+          {"content_hash", table.content_hash},
           {"state_hash", table.state_hash}};
 }
 
@@ -98,6 +100,7 @@ absl::StatusOr<Json> run_startup(client::PlanFile plan, const Options& options) 
   const auto here = measure_startup(plan);
   if (!here.ok()) return here.status();
   Json json = {{"scan", plan.scan_file->filename().string()}, {"in_process", show("in process", *here)}};
+  if (options.in_process_only) return json;
   const auto served = measure_served_startup(plan);
   if (!served.ok()) return served.status();
   json["served"] = show("through a daemon", *served);
@@ -141,6 +144,7 @@ int run_main(int argc, char** argv) {
   startup->add_option("--refinements", options.refinements, "cut every triangle of the scan in four, so often");
   startup->add_option("--format", options.format, "format of the refined scan")
       ->check(CLI::IsMember({"obj", "ply", "stl"}));
+  startup->add_flag("--in-process", options.in_process_only, "without a daemon");
   startup->callback([&] { carry_out(options, run_startup, exit_code); });
   CLI11_PARSE(app, argc, argv);
   return exit_code;

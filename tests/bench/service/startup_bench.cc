@@ -139,7 +139,6 @@ absl::StatusOr<StartupTable> measure_startup(const client::PlanFile& plan) {
   (*simulation)->advance_step();
   times.end("first step");
   table.phases = times.phases();
-  table.content_hash = (*model)->content_hash;
   table.state_hash = (*simulation)->state_hash();
   return table;
 }

@@ -14,8 +14,7 @@ namespace lipofill::bench {
 struct StartupTable {
   int triangles = 0;  ///< of the scan as it is in the file
   std::vector<Phase> phases;
-  std::string content_hash;  ///< of the model, in process
-  std::string state_hash;    ///< after the first step
+  std::string state_hash;  ///< after the first step
 
   /// Wall time of all phases up to the first frame [ms].
   double first_frame_ms() const;

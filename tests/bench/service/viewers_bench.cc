@@ -62,12 +62,13 @@ absl::Status check(const std::deque<Viewer>& viewers) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<ViewersRow> run_once(ServedPlan& served, const std::string& id, int n_viewers, double simulated_s) {
+absl::StatusOr<ViewersRow> run_once(ServedPlan& served, const std::string& id, int n_viewers,
+                                    const std::vector<std::string>& meshes, double simulated_s) {
   if (const absl::Status made = served.create(id, simulated_s); !made.ok()) return made;
   v1::WatchRequest request;
   request.set_simulation("simulations/" + id);
   request.set_delivery(v1::WatchRequest::LATEST);
-  for (const std::string& mesh : served.meshes()) request.add_meshes(mesh);
+  for (const std::string& mesh : meshes) request.add_meshes(mesh);
   std::latch watching(n_viewers);
   std::deque<Viewer> viewers;
   for (int k = 0; k < n_viewers; ++k) viewers.emplace_back(served.connection().server(), request, watching);
@@ -99,13 +100,14 @@ absl::StatusOr<ViewersRow> run_once(ServedPlan& served, const std::string& id, i
 }  // namespace
 
 absl::StatusOr<std::vector<ViewersRow>> measure_viewers(const client::PlanFile& plan, const std::vector<int>& viewers,
-                                                        double simulated_s, int rounds) {
+                                                        const std::vector<std::string>& meshes, double simulated_s,
+                                                        int rounds) {
   const auto served = ServedPlan::start(plan, 1);
   if (!served.ok()) return served.status();
   std::vector<std::vector<ViewersRow>> runs(viewers.size());
   for (int round = 0; round < rounds; ++round) {
     for (size_t k = 0; k < viewers.size(); ++k) {
-      auto row = run_once(**served, absl::StrCat("round", round, "-", viewers[k]), viewers[k], simulated_s);
+      auto row = run_once(**served, absl::StrCat("round", round, "-", viewers[k]), viewers[k], meshes, simulated_s);
       if (!row.ok()) return row.status();
       runs[k].push_back(*row);
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -19,9 +20,10 @@ struct ViewersRow {
 };
 
 /// Runs the plan for a simulated time [s] with each number of viewers in turn, `rounds` times over, on one daemon. A
-/// row a number of viewers: the run with the median of worker_cpu_s. Viewers watch the skin, the scan and the films,
-/// LATEST, every step.
+/// row a number of viewers: the run with the median of worker_cpu_s. Viewers watch the meshes named (none: what the
+/// daemon shows who names none), LATEST, every step.
 absl::StatusOr<std::vector<ViewersRow>> measure_viewers(const client::PlanFile& plan, const std::vector<int>& viewers,
-                                                        double simulated_s, int rounds);
+                                                        const std::vector<std::string>& meshes, double simulated_s,
+                                                        int rounds);
 
 }  // namespace lipofill::bench

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "absl/strings/str_cat.h"
+#include "server/sessions/memory.h"
 #include "spdlog/spdlog.h"
 
 namespace lipofill::server {
@@ -278,6 +279,7 @@ void Session::finish(SimulationState state, const std::string& reason) {
   }
   viewers_.clear();
   simulation_ = nullptr;
+  give_memory_back();
 }
 
 void Session::conclude() {

@@ -80,7 +80,9 @@ absl::StatusOr<SessionsRow> measure_sessions(const client::PlanFile& plan, int w
   for (int k = 0; k < sessions && status.ok(); ++k) status = (*served)->start(id_of(k));
   if (status.ok()) status = follow(**served, row);
   for (int k = 0; k < sessions && status.ok(); ++k) status = (*served)->await_end(id_of(k)).status();
+  for (int k = 0; k < sessions && status.ok(); ++k) status = (*served)->remove(id_of(k));
   if (!status.ok()) return status;
+  row.left_mb = read_process((*served)->daemon()).resident_mb - row.idle_mb;
   return row;
 }
 

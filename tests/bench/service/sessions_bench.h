@@ -18,6 +18,7 @@ struct SessionsRow {
   double idle_mb = 0.0;               ///< resident with the model alone
   double created_mb_a_session = 0.0;  ///< more with the simulations made
   double running_mb_a_session = 0.0;  ///< more while they run, at most
+  double left_mb = 0.0;               ///< more than with the model alone once they are deleted
 };
 
 /// Runs `sessions` simulations of the plan for a simulated time [s] on a fresh daemon. Figures are taken from the start

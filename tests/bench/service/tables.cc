@@ -12,16 +12,17 @@ double ms_per_step(double seconds, double steps) {
 }  // namespace
 
 Json show(const std::vector<SessionsRow>& rows) {
-  absl::FPrintF(stderr, "%8s %8s %9s %9s %9s %10s %10s %6s %8s %9s %9s\n", "sessions", "workers", "steps/s",
-                "a session", "fairness", "worker ms", "daemon ms", "busy", "threads", "made MB", "run MB");
+  absl::FPrintF(stderr, "%8s %8s %9s %9s %9s %10s %10s %6s %8s %9s %9s %8s\n", "sessions", "workers", "steps/s",
+                "a session", "fairness", "worker ms", "daemon ms", "busy", "threads", "made MB", "run MB", "left MB");
   Json json = Json::array();
   for (const SessionsRow& row : rows) {
     const double rate = row.steps / row.wall_s;
     const double worker_ms = ms_per_step(row.worker_cpu_s, row.steps);
     const double daemon_ms = ms_per_step(row.daemon_cpu_s, row.steps);
-    absl::FPrintF(stderr, "%8d %8d %9.1f %9.1f %9.3f %10.2f %10.2f %6.2f %8d %9.1f %9.1f\n", row.sessions, row.workers,
-                  rate, rate / row.sessions, row.fairness, worker_ms, daemon_ms, row.worker_cpu_s / row.wall_s,
-                  row.threads, row.created_mb_a_session, row.running_mb_a_session);
+    absl::FPrintF(stderr, "%8d %8d %9.1f %9.1f %9.3f %10.2f %10.2f %6.2f %8d %9.1f %9.1f %8.1f\n", row.sessions,
+                  row.workers, rate, rate / row.sessions, row.fairness, worker_ms, daemon_ms,
+                  row.worker_cpu_s / row.wall_s, row.threads, row.created_mb_a_session, row.running_mb_a_session,
+                  row.left_mb);
     json.push_back({{"sessions", row.sessions},
                     {"workers", row.workers},
                     {"steps_per_s", rate},
@@ -33,7 +34,8 @@ Json show(const std::vector<SessionsRow>& rows) {
                     {"threads", row.threads},
                     {"idle_mb", row.idle_mb},
                     {"created_mb_per_session", row.created_mb_a_session},
-                    {"running_mb_per_session", row.running_mb_a_session}});
+                    {"running_mb_per_session", row.running_mb_a_session},
+                    {"left_mb", row.left_mb}});
   }
   return json;
 }

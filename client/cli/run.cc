@@ -33,6 +33,14 @@ constexpr std::chrono::milliseconds kFollowPeriod(200);
 constexpr std::chrono::seconds kWatchTime(5);
 constexpr double kDefaultEndSeconds = 60.0;
 
+/// The settled shape in as few steps as it takes: the goal's own step lengths and tolerance in place of the plan's.
+void aim_at_settled_shape(v1::TimeControl& time) {
+  time.set_goal(v1::TimeControl::SETTLED_SHAPE);
+  time.clear_max_step_ms();
+  time.clear_max_injection_step_ms();
+  time.clear_error_tolerance_mm();
+}
+
 }  // namespace
 
 Run::Run(Application& application, RunOptions options)
@@ -69,6 +77,7 @@ absl::Status Run::read_plan() {
     if (!options_.bone.empty()) plan_.plan.mutable_bone()->set_unit(*options_.unit);
   }
   if (options_.interval_ms) plan_.plan.mutable_output()->set_interval_ms(*options_.interval_ms);
+  if (options_.fast) aim_at_settled_shape(*plan_.plan.mutable_simulation()->mutable_time());
   if (plan_.plan.name().empty()) plan_.plan.set_name(plan_.path.stem().string());
   if (auto status = load_plan_landmarks(&plan_); !status.ok()) return status;
   if (auto status = check_bone_file(plan_); !status.ok()) return status;

@@ -30,6 +30,7 @@ struct RunOptions {
   std::string evaluate;  ///< a target surface; empty: none
   v1::ScanUnit target_unit = v1::MILLIMETRE;
   bool spawn = false;
+  bool fast = false;  ///< the settled shape in few steps, in place of the plan's steps
   bool keep = true;
   bool picture = true;
   bool quiet = false;

@@ -16,6 +16,7 @@ constexpr char kDescription[] =
 
 constexpr char kRunExamples[] =
     "  lipofill run jaw_angle.json --out result --spawn\n"
+    "  lipofill run jaw_angle.json --out result --spawn --fast\n"
     "  lipofill run jaw_angle.json --out result --spawn --scan face.obj --landmarks face.json --unit mm\n"
     "  lipofill run jaw_angle.json --out result --spawn --interval-ms 500 --evaluate goal.obj\n"
     "  lipofill run square.json --out result --server 10.0.0.5:50061 --json --quiet\n";
@@ -43,6 +44,10 @@ void add_run_command(CLI::App& root, Application& application) {
       ->add_option("--interval-ms", options->interval_ms,
                    "simulated time between written files, in place of the plan's; 0: only first and last")
       ->check(CLI::NonNegativeNumber);
+  command->add_flag(
+      "--fast", options->fast,
+      "only the settled shape counts: few long steps in place of the plan's (time.goal SETTLED_SHAPE with "
+      "its own max_step_ms, max_injection_step_ms and error_tolerance_mm)");
   command->add_option("--evaluate", options->evaluate,
                       "measure the result against this surface, as lipofill evaluate does");
   command->add_option("--target-unit", options->target_unit, "unit of that surface: mm (default), cm or m")

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
@@ -92,7 +93,7 @@ absl::Status InjectionSchedule::add(const FaceModel& model, const std::vector<Fi
   injection.volume = spec.volume;
   injection.rate = spec.rate;
   injection.start = spec.start.value_or(std::max(now, end_));
-  end_ = std::max(end_, injection.start + std::abs(spec.volume) / spec.rate);
+  end_ = std::max(end_, injection.end());
   injections_.push_back(std::move(injection));
   return absl::OkStatus();
 }
@@ -128,6 +129,16 @@ std::vector<Eigen::VectorXd> InjectionSchedule::deliver(const std::vector<FilmLa
 double InjectionSchedule::due(const Injection& injection, double time) {
   const double elapsed = std::max(0.0, time - injection.start);
   return std::copysign(std::min(std::abs(injection.volume), injection.rate * elapsed), injection.volume);
+}
+
+double InjectionSchedule::next_change(double time) const {
+  double next = std::numeric_limits<double>::infinity();
+  for (const Injection& injection : injections_) {
+    for (const double change : {injection.start, injection.end()}) {
+      if (change > time) next = std::min(next, change);
+    }
+  }
+  return next;
 }
 
 double InjectionSchedule::undelivered(double time) const {

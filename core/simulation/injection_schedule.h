@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,9 @@ class InjectionSchedule {
   /// When the last injection ends [s].
   double end() const { return end_; }
 
+  /// The first start or end of an injection after `time` [s]; infinity when there is none.
+  double next_change(double time) const;
+
   /// Mutable part, for snapshots: what each injection has delivered.
   std::vector<double> delivered_each() const;
   void restore_delivered(const std::vector<double>& each, double total);
@@ -39,11 +43,12 @@ class InjectionSchedule {
   struct Injection {
     int film = 0;
     std::vector<int> cells;
-    std::vector<double> shares;  ///< sum 1
-    double volume = 0.0;         ///< [m3]
-    double rate = 0.0;           ///< [m3/s] > 0
-    double start = 0.0;          ///< [s]
-    double delivered = 0.0;      ///< [m3]
+    std::vector<double> shares;                                     ///< sum 1
+    double volume = 0.0;                                            ///< [m3]
+    double rate = 0.0;                                              ///< [m3/s] > 0
+    double start = 0.0;                                             ///< [s]
+    double delivered = 0.0;                                         ///< [m3]
+    double end() const { return start + std::abs(volume) / rate; }  ///< [s]
   };
   /// Volume that should have been delivered by `time` [m3].
   static double due(const Injection& injection, double time);

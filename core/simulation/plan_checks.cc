@@ -34,6 +34,10 @@ void check_time(const SimulationSpec& spec, FieldViolations& violations) {
     violations.check_range("time.max_step_ms", *spec.max_step / kSecondsPerMillisecond,
                            spec.step / kSecondsPerMillisecond, 60000.0, "ms");
   }
+  if (spec.max_injection_step.has_value()) {
+    violations.check_range("time.max_injection_step_ms", *spec.max_injection_step / kSecondsPerMillisecond,
+                           spec.step / kSecondsPerMillisecond, 60000.0, "ms");
+  }
   violations.check_range("time.error_tolerance_mm", spec.error_tolerance * 1e3, 1e-9, 100.0, "mm");
   violations.check_range("time.end_s", spec.end, 1e-6, 1e6, "s");
   violations.check_range("time.settle_skin_speed_mm_per_s", spec.settle_skin_speed * 1e3, 0.0, 1000.0, "mm/s");

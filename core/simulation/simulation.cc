@@ -10,20 +10,19 @@
 #include "core/base/field_violations.h"
 #include "core/simulation/plan_checks.h"
 #include "core/simulation/simulation_impl.h"
+#include "core/simulation/step_rules.h"
 
 namespace lipofill::simulation {
 namespace {
 
 /// A step that does not converge is tried again at half its size, down to this share of the plan's step.
 constexpr double kSmallestStepShare = 1.0 / 1024.0;
-/// A step grows at most by this, and only when the last one was easy.
-constexpr double kStepGrowth = 2.0;
-constexpr int kEasyFilmIterations = 30;
-constexpr int kEasyNewtonIterations = 4;
 /// A step aims at this share of the size that the error estimate allows.
 constexpr double kStepSafety = 0.8;
-/// The skin counts as at rest after this many slow steps in a row.
-constexpr int kSettledSteps = 5;
+
+bool is_round_off_from(double time, double mark) {
+  return std::abs(time - mark) <= 1e-12 * mark;
+}
 
 }  // namespace
 
@@ -113,7 +112,7 @@ StepOutcome Simulation::Impl::try_with_smaller_steps() {
   const double smallest = spec.step * kSmallestStepShare;
   StepOutcome outcome;
   uint64_t rejected = state.rejected_steps;
-  for (double dt = std::max(state.next_step, smallest); dt >= smallest;) {
+  for (double dt = first_step_to_try(smallest); dt >= smallest;) {
     outcome = stepper->try_step(state, schedule.deliver(films, state.films, state.time, dt), dt);
     outcome.state.rejected_steps = rejected;
     if (outcome.accepted) {
@@ -127,6 +126,21 @@ StepOutcome Simulation::Impl::try_with_smaller_steps() {
   outcome.accepted = false;
   outcome.reason = absl::StrCat("at ", state.time, " s, with steps down to ", smallest * 1e3, " ms: ", outcome.reason);
   return outcome;
+}
+
+/// The step chosen, or less: where steps may grow while injecting, one ends where an injection starts or ends, so that
+/// none is smeared over time, and the way there is halved rather than left with a sliver of a step.
+double Simulation::Impl::first_step_to_try(double smallest) const {
+  const double dt = std::max(state.next_step, smallest);
+  if (!spec.max_injection_step.has_value()) return dt;
+  const double left = next_mark() - state.time;
+  if (dt >= left) return std::max(left, smallest);
+  return 2.0 * dt > left ? 0.5 * left : dt;
+}
+
+/// When something happens next that a step may not run over: an injection starts or ends, or the simulation does.
+double Simulation::Impl::next_mark() const {
+  return std::min(schedule.next_change(state.time), spec.end);
 }
 
 /// Local error of implicit Euler, dt^2 x''/2, from how far the step leaves the line of the last one: the largest over
@@ -151,11 +165,14 @@ double Simulation::Impl::allowed_step(double dt, double error) const {
 
 void Simulation::Impl::accept(StepOutcome outcome, double dt) {
   const double last_speed = state.skin_speed;
+  const bool ends_at_mark = spec.max_injection_step.has_value() && is_round_off_from(outcome.state.time, next_mark());
+  if (ends_at_mark) outcome.state.time = next_mark();
   fill_report(outcome, dt);
   report.settling_error = estimate_settling_error(last_speed, dt);
   state = std::move(outcome.state);
   state.skin_speed = report.skin_speed;
   choose_next_step(outcome, dt);
+  if (ends_at_mark) state.next_step = spec.step;
   decide_phase();
 }
 
@@ -168,10 +185,11 @@ double Simulation::Impl::estimate_settling_error(double last_speed, double dt) c
 
 void Simulation::Impl::choose_next_step(const StepOutcome& outcome, double dt) {
   const bool injecting = state.time < schedule.end();
-  const double largest = injecting ? spec.step : spec.max_step.value_or(spec.step);
-  const bool easy =
-      outcome.film_iterations <= kEasyFilmIterations && outcome.newton_iterations <= kEasyNewtonIterations;
-  const double growth = easy ? std::min(kStepGrowth * dt, std::max(dt, allowed_step(dt, outcome.error))) : dt;
+  const double largest = (injecting ? spec.max_injection_step : spec.max_step).value_or(spec.step);
+  const StepRules rules = rules_of(spec.goal);
+  const bool easy = outcome.film_iterations <= rules.easy_film_iterations &&
+                    outcome.newton_iterations <= rules.easy_newton_iterations;
+  const double growth = easy ? std::min(rules.growth * dt, std::max(dt, allowed_step(dt, outcome.error))) : dt;
   state.next_step = std::min(std::max(growth, std::min(spec.step, 2.0 * dt)), largest);
 }
 
@@ -179,7 +197,8 @@ void Simulation::Impl::decide_phase() {
   const bool slow =
       spec.settle_skin_speed > 0.0 && report.skin_speed < spec.settle_skin_speed && state.time >= schedule.end();
   state.slow_steps = slow ? state.slow_steps + 1 : 0;
-  if (state.slow_steps >= kSettledSteps) {
+  const bool falls = std::isfinite(report.settling_error);
+  if (state.slow_steps >= rules_of(falls ? spec.goal : TimeGoal::kTransient).settled_steps) {
     phase = Phase::kSettled;
     reason = absl::StrCat("the skin moves slower than ", spec.settle_skin_speed * 1e3, " mm/s");
   } else if (state.time >= spec.end * (1.0 - 1e-12)) {

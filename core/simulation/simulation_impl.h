@@ -37,6 +37,8 @@ struct Simulation::Impl {
   absl::Status place_probes();
   absl::Status add_injection(const InjectionSpec& injection, double now);
   StepOutcome try_with_smaller_steps();
+  double first_step_to_try(double smallest) const;
+  double next_mark() const;
   void accept(StepOutcome outcome, double dt);
   double estimate_error(const SimulationState& next, double dt) const;
   double allowed_step(double dt, double error) const;

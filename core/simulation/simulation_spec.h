@@ -14,6 +14,8 @@ namespace lipofill::simulation {
 
 enum class CouplingMode { kExact, kLumped };
 enum class WallFriction { kNoSlip, kNone };
+/// What a simulation is for: to watch, or for the shape in the end, in as few steps as that takes.
+enum class TimeGoal { kTransient, kSettledShape };
 enum class FilmWallKind { kTissue, kRigid, kWinkler };
 
 using geometry::ChartBox;
@@ -101,10 +103,12 @@ struct SimulationSpec {
   std::optional<double> suction_limit;      ///< a void opens in the film below minus this pressure [Pa]
   std::vector<FilmSpec> films;
   std::vector<InjectionSpec> injections;
-  double step = 0.010;                 ///< [s]
-  std::optional<double> max_step;      ///< [s]
-  double end = 60.0;                   ///< [s]
-  double settle_skin_speed = 0.02e-3;  ///< [m/s], 0: never
+  TimeGoal goal = TimeGoal::kTransient;
+  double step = 0.010;                       ///< [s]
+  std::optional<double> max_step;            ///< after the last injection [s]; none: `step`
+  std::optional<double> max_injection_step;  ///< until then [s]; none: `step`
+  double end = 60.0;                         ///< [s]
+  double settle_skin_speed = 0.02e-3;        ///< [m/s], 0: never
   CouplingMode coupling = CouplingMode::kExact;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s2]
   double damping_mass = 0.0;                          ///< alpha [1/s]

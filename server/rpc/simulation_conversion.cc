@@ -1,6 +1,9 @@
 #include "server/rpc/simulation_conversion.h"
 
+#include <algorithm>
+
 #include "core/anatomy/fat_presets.h"
+#include "core/simulation/step_rules.h"
 #include "server/rpc/chart_conversion.h"
 
 namespace lipofill::server {
@@ -131,8 +134,17 @@ simulation::InjectionSpec read_injection(const v1::Injection& message, const Fie
 }
 
 void read_time(const v1::TimeControl& message, simulation::SimulationSpec& spec) {
+  if (message.goal() == v1::TimeControl::SETTLED_SHAPE) spec.goal = simulation::TimeGoal::kSettledShape;
   if (message.has_step_ms()) spec.step = message.step_ms() * kSecondPerMillisecond;
+  const simulation::TimeFigures figures = simulation::figures_of(spec.goal);
+  if (figures.max_step.has_value()) spec.max_step = std::max(spec.step, *figures.max_step);
+  if (figures.max_injection_step.has_value())
+    spec.max_injection_step = std::max(spec.step, *figures.max_injection_step);
+  spec.error_tolerance = figures.error_tolerance;
   if (message.has_max_step_ms()) spec.max_step = message.max_step_ms() * kSecondPerMillisecond;
+  if (message.has_max_injection_step_ms()) {
+    spec.max_injection_step = message.max_injection_step_ms() * kSecondPerMillisecond;
+  }
   if (message.has_end_s()) spec.end = message.end_s();
   if (message.has_settle_skin_speed_mm_per_s()) {
     spec.settle_skin_speed = message.settle_skin_speed_mm_per_s() * kMetrePerMillimetre;

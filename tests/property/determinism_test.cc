@@ -63,6 +63,21 @@ TEST(Snapshot, RestoredStepEqualsTheStepAtEveryPointOfARun) {
   }
 }
 
+TEST(Snapshot, RestoredStepEqualsTheStepWhereStepsGrowWhileInjecting) {
+  SimulationSpec spec = plan_with_everything(CouplingMode::kExact);
+  spec.goal = TimeGoal::kSettledShape;
+  spec.max_injection_step = 0.1;
+  const auto original = make_small_simulation(spec);
+  const auto restored = make_small_simulation(spec);
+  for (int k = 0; k < kSteps; ++k) {
+    ASSERT_TRUE(restored->restore(original->snapshot()).ok());
+    original->advance_step();
+    restored->advance_step();
+    ASSERT_EQ(restored->state_hash(), original->state_hash()) << "step " << k;
+    EXPECT_EQ(restored->phase(), original->phase());
+  }
+}
+
 TEST(Snapshot, RefusesWhatIsNotItsState) {
   const auto simulation = make_small_simulation();
   simulation->advance_step();

@@ -47,6 +47,10 @@ TEST_F(BadInputTest, ValuesTheDaemonRefuses) {
   expect_failure("lipofill run nu.json --out out --spawn --quiet", 2, "poisson_ratio");
   write_plan("zone.json", "/simulation/injections/0/zone", "elsewhere");
   expect_failure("lipofill run zone.json --out out --spawn --quiet", 2, "injections[0].zone");
+  write_plan("step.json", "/simulation/time/max_injection_step_ms", 1.0);
+  expect_failure("lipofill run step.json --out out --spawn --quiet", 2, "time.max_injection_step_ms");
+  write_plan("goal.json", "/simulation/time/goal", "PERFECT");
+  expect_failure("lipofill plan check goal.json", 2, "goal");
   const CommandResult result = run("lipofill run nu.json --out out --spawn --json");
   EXPECT_EQ(result.exit_code, 2);
   const size_t begin = result.errors.find("{\n");

@@ -90,6 +90,20 @@ TEST_F(RunTest, SummaryAndSeriesAgreeAndTwoRunsAreTheSame) {
   EXPECT_FALSE(exists("b/skin_0002.vtp"));
 }
 
+TEST_F(RunTest, FastGivesTheSettledShapeInFewSteps) {
+  write_plan("settles.json", "/simulation/time",
+             {{"step_ms", 10}, {"max_step_ms", 100}, {"end_s", 300}, {"settle_skin_speed_mm_per_s", 0.01}});
+  const std::string options = " --spawn --discard --no-picture --quiet --interval-ms 0";
+  const auto watched = answer_of("lipofill run settles.json --out a" + options);
+  const auto fast = answer_of("lipofill run settles.json --out b --fast" + options);
+  EXPECT_EQ(watched["state"], "SETTLED");
+  EXPECT_EQ(fast["state"], "SETTLED");
+  EXPECT_LT(3 * fast["steps"].get<int>(), watched["steps"].get<int>());
+  EXPECT_NEAR(fast["injected_ml"].get<double>(), 0.3, 1e-12);
+  EXPECT_LT(fast["gap_volume_relative_error"].get<double>(), 1e-4);
+  EXPECT_NEAR(fast["skin_max_displacement_mm"].get<double>(), watched["skin_max_displacement_mm"].get<double>(), 0.05);
+}
+
 TEST_F(RunTest, DrawsAndEvaluatesTheFolder) {
   write_plane("goal.obj", 1.0);
   const CommandResult made = run("lipofill run plan.json --out out --spawn");

@@ -160,6 +160,12 @@ TEST_F(BadInputTest, Simulations) {
   spec.mutable_time()->set_step_ms(-10);
   expect_refused_simulation(spec, "time.step_ms");
   spec = good;
+  spec.mutable_time()->set_max_injection_step_ms(0.5);
+  expect_refused_simulation(spec, "time.max_injection_step_ms");
+  spec = good;
+  spec.mutable_time()->set_goal(static_cast<v1::TimeControl::Goal>(7));
+  expect_refused_simulation(spec, "time.goal");
+  spec = good;
   spec.mutable_time()->set_end_s(std::numeric_limits<double>::infinity());
   expect_refused_simulation(spec, "time.end_s");
   spec = good;

@@ -163,6 +163,28 @@ TEST(SimulationConversion, KeepsTheDefaultsOfTheCore) {
   EXPECT_EQ(spec->coupling, defaults.coupling);
 }
 
+TEST(SimulationConversion, ReadsTheGoalAndLetsGivenStepsWin) {
+  const auto few = to_simulation_spec(parse<v1::SimulationSpec>("model: 'm' time { goal: SETTLED_SHAPE }"));
+  ASSERT_TRUE(few.ok()) << few.status();
+  EXPECT_EQ(few->goal, simulation::TimeGoal::kSettledShape);
+  EXPECT_DOUBLE_EQ(*few->max_step, 60.0);
+  EXPECT_DOUBLE_EQ(*few->max_injection_step, 0.5);
+  EXPECT_DOUBLE_EQ(few->error_tolerance, 0.2e-3);
+  const auto given = to_simulation_spec(parse<v1::SimulationSpec>(R"(model: 'm' time {
+    goal: SETTLED_SHAPE step_ms: 20 max_step_ms: 300 max_injection_step_ms: 40 error_tolerance_mm: 0.01 })"));
+  ASSERT_TRUE(given.ok()) << given.status();
+  EXPECT_DOUBLE_EQ(*given->max_step, 0.3);
+  EXPECT_DOUBLE_EQ(*given->max_injection_step, 0.04);
+  EXPECT_DOUBLE_EQ(given->error_tolerance, 1e-5);
+  const auto long_step =
+      to_simulation_spec(parse<v1::SimulationSpec>("model: 'm' time { goal: SETTLED_SHAPE step_ms: 700 }"));
+  EXPECT_DOUBLE_EQ(*long_step->max_injection_step, 0.7) << "no shorter than the step";
+  const auto watched = to_simulation_spec(parse<v1::SimulationSpec>("model: 'm' time { max_injection_step_ms: 50 }"));
+  EXPECT_EQ(watched->goal, simulation::TimeGoal::kTransient);
+  EXPECT_DOUBLE_EQ(*watched->max_injection_step, 0.05);
+  EXPECT_FALSE(watched->max_step.has_value());
+}
+
 TEST(SimulationConversion, NamesEverythingThatIsMissing) {
   const auto spec = to_simulation_spec(parse<v1::SimulationSpec>(R"(
     films { zones { } zones { name: "b" disc { } } extent { xi_min: 0 } rest_thickness_mm { } wall { kind: WINKLER } }

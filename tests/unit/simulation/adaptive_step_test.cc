@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
+#include "core/simulation/step_rules.h"
 #include "tests/unit/simulation/small_case.h"
 
 namespace lipofill::simulation {
@@ -56,6 +58,109 @@ TEST(AdaptiveStep, AcceptedLongStepsKeepTheirTolerance) {
     longest = std::max(longest, report.step_size);
   }
   EXPECT_GT(longest, 10.0 * spec.step);
+}
+
+/// Two injections with a pause before each, of lengths that no sum of equal steps meets.
+SimulationSpec make_plan_with_pauses() {
+  SimulationSpec spec = make_small_plan();
+  spec.injections = {{"all", 0.1e-6, 0.3e-6, 0.1 + 1.0 / 7.0, std::nullopt},
+                     {"all", 0.2e-6, 0.7e-6, 1.1, geometry::ChartPoint{0.55, 0.45}}};
+  spec.settle_skin_speed = 0.0;
+  spec.end = 5.0 / 3.0;
+  return spec;
+}
+
+TEST(AdaptiveStep, EndsWhereInjectionsAndTheSimulationStartAndEnd) {
+  SimulationSpec spec = make_plan_with_pauses();
+  spec.max_injection_step = 0.5;
+  spec.max_step = 0.5;
+  const double first = *spec.injections[0].start;
+  const double first_end = first + 0.1e-6 / 0.3e-6;
+  const double second_end = 1.1 + 0.2e-6 / 0.7e-6;
+  const auto simulation = make_small_simulation(spec);
+  std::vector<double> marks;
+  double longest = 0.0, shortest = 1.0;
+  for (double injected = 0.0; simulation->phase() == Phase::kRunning;) {
+    simulation->advance_step();
+    const StepReport& report = simulation->report();
+    for (const double mark : {first, first_end, 1.1, second_end, spec.end}) {
+      if (report.time == mark) marks.push_back(mark);
+    }
+    const bool injects = report.injected - injected > 1e-18;  // a round-off's worth may follow the end
+    EXPECT_EQ(injects,
+              (report.time > first && report.time <= first_end) || (report.time > 1.1 && report.time <= second_end))
+        << report.time;
+    injected = report.injected;
+    longest = std::max(longest, report.step_size);
+    shortest = std::min(shortest, report.step_size);
+  }
+  EXPECT_EQ(simulation->phase(), Phase::kFinished) << simulation->reason();
+  EXPECT_EQ(marks, (std::vector<double>{first, first_end, 1.1, second_end, spec.end}));
+  EXPECT_NEAR(simulation->report().injected, 0.3e-6, 1e-20);
+  EXPECT_GT(longest, 5.0 * spec.step);
+  EXPECT_GE(shortest, 0.5 * spec.step);
+  EXPECT_LT(simulation->report().film_volume_relative_error, 1e-10);
+}
+
+TEST(AdaptiveStep, WhileInjectingKeepsItsTolerance) {
+  SimulationSpec fixed = make_plan_with_pauses();
+  SimulationSpec growing = fixed;
+  growing.max_injection_step = 0.5;
+  growing.error_tolerance = 20e-6;
+  const auto a = make_small_simulation(fixed);
+  const auto b = make_small_simulation(growing);
+  while (a->phase() == Phase::kRunning) a->advance_step();
+  while (b->phase() == Phase::kRunning) {
+    b->advance_step();
+    if (b->report().step_size > growing.step * 1.0000001) {
+      EXPECT_LE(b->report().error_estimate, growing.error_tolerance);
+    }
+  }
+  EXPECT_LT(b->report().step, a->report().step / 2);
+  EXPECT_NEAR(b->report().probe_thickness[0], a->report().probe_thickness[0], 100e-6);
+}
+
+TEST(AdaptiveStep, ALiveInjectionStartsAndEndsWhereItShould) {
+  SimulationSpec spec = make_plan_with_pauses();
+  spec.max_injection_step = 0.5;
+  spec.max_step = 0.5;
+  const auto simulation = make_small_simulation(spec);
+  while (simulation->report().time < 0.5) simulation->advance_step();
+  ASSERT_TRUE(simulation->inject({"all", 0.05e-6, 1e-6, 0.77, std::nullopt}).ok());
+  const double end = 0.77 + 0.05e-6 / 1e-6;
+  std::vector<double> injected_at_marks;
+  while (simulation->phase() == Phase::kRunning && simulation->report().time < 1.1) {
+    simulation->advance_step();
+    const StepReport& report = simulation->report();
+    if (report.time == 0.77 || report.time == end) injected_at_marks.push_back(report.injected);
+  }
+  ASSERT_EQ(injected_at_marks.size(), 2u);
+  EXPECT_NEAR(injected_at_marks[1] - injected_at_marks[0], 0.05e-6, 1e-20);
+}
+
+TEST(SettledShape, IsThatOfShortStepsInAFewLongOnes) {
+  SimulationSpec spec = make_small_plan();
+  spec.end = 600.0;
+  spec.films[0].rest_thickness = geometry::ScalarField::constant(0.5e-3);
+  spec.settle_skin_speed = 0.002e-3;
+  SimulationSpec watched = spec;
+  watched.max_step = 0.5;
+  spec.goal = TimeGoal::kSettledShape;
+  const TimeFigures figures = figures_of(spec.goal);
+  spec.max_step = figures.max_step;
+  spec.max_injection_step = figures.max_injection_step;
+  spec.error_tolerance = figures.error_tolerance;
+  const auto a = make_small_simulation(watched);
+  const auto b = make_small_simulation(spec);
+  while (a->phase() == Phase::kRunning) a->advance_step();
+  while (b->phase() == Phase::kRunning) b->advance_step();
+  EXPECT_EQ(a->phase(), Phase::kSettled) << a->reason();
+  EXPECT_EQ(b->phase(), Phase::kSettled) << b->reason();
+  EXPECT_LT(b->report().step, a->report().step / 3);
+  const double still_to_go = a->report().settling_error + b->report().settling_error;
+  EXPECT_LT(still_to_go, 0.2e-3);
+  EXPECT_NEAR(b->report().skin_max_displacement, a->report().skin_max_displacement, 10e-6 + still_to_go);
+  EXPECT_NEAR(b->report().injected, 0.3e-6, 1e-20);
 }
 
 TEST(AdaptiveStep, SaysHowFarTheSkinHasStillToGo) {

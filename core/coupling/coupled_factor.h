@@ -3,54 +3,64 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 #include <memory>
+#include <optional>
 
-#include "absl/status/status.h"
+#include "core/coupling/factor_analysis.h"
+#include "core/coupling/supernodal_factor.h"
 
 namespace lipofill::coupling {
 
-/// Factor of the tissue's S together with the films' B, which yields the compliance C = B S^-1 B^T on the way.
+enum class Precision { kSingle, kDouble };
+
+/// Solves with the tissue's S and what it gives the films: the compliance C = B S^-1 B^T.
 ///
-/// CHOLMOD factors the symmetric positive definite matrix
+/// The dense route, for an analysis with pressures in it, has C at hand from the factorisation (supernodal_factor.h)
+/// and takes the two halves of a solve apart: forward for the gap's response, backward for the displacement once the
+/// pressure is known. The implicit route, for an analysis of S alone, has no C, only its product with a vector: one
+/// solve each.
 ///
-///     [ S  B^T ]          with the pressures ordered last and e larger than the largest eigenvalue of C,
-///     [ B  e I ]          so that the last block of the factor is  L22 L22^T = e I - C.
-///
-/// C comes out of one supernodal factorisation, without a solve a cell (the paper's way), at the cost of digits: C is
-/// exact to round-off relative to e, and e is kept within a small factor of the norm of C. Solves with S use the same
-/// factor. The symbolic analysis is done once.
-///
-/// Decision record: core/doc/decisions/002-compliance-by-augmented-cholesky.md.
+/// In float32 solutions are good to about 1e-6 relative on faces: enough for a left side, whose errors the next
+/// iteration makes good; float64 is there for tissue that has no positive pivots in float32.
+/// Decision record: core/doc/decisions/009-single-precision-factor.md.
 /// Checked by tests/unit/coupling/coupled_factor_test.cc against dense references.
 class CoupledFactor {
  public:
-  /// Analyses the patterns: the lower triangle of S (n_dofs, n_dofs), columns and rows ascending, and B (n_cells,
-  /// n_dofs).
-  CoupledFactor(const Eigen::SparseMatrix<double>& s, const Eigen::SparseMatrix<double>& b);
-  ~CoupledFactor();
+  explicit CoupledFactor(std::shared_ptr<const FactorAnalysis> analysis);
 
-  /// Memory that the factor takes [bytes], known before the first factorise; infinite when the analysis itself failed.
-  double factor_bytes() const;
-  CoupledFactor(const CoupledFactor&) = delete;
-  CoupledFactor& operator=(const CoupledFactor&) = delete;
+  /// Factors S with the films' B, in the patterns that were analysed. False: not positive definite in that precision;
+  /// the factor is then not usable.
+  bool factorise(const Eigen::SparseMatrix<double>& s, const Eigen::SparseMatrix<double>& b, Precision precision);
 
-  /// Factors new values in the same patterns. INTERNAL when S is not positive definite; the factor is then not usable.
-  absl::Status factorise(const Eigen::SparseMatrix<double>& s, const Eigen::SparseMatrix<double>& b);
+  /// B of the last factorise [m2] (n_cells, n_dofs).
+  const Eigen::SparseMatrix<double>& derivative() const { return derivative_; }
+  bool has_compliance() const { return analysis_->n_cells() > 0; }
+  /// C of the last factorise [m3/Pa] (n_cells, n_cells), symmetric. Dense route only.
+  const Eigen::MatrixXd& compliance() const { return compliance_; }
+  /// C 1, the gap's response to a pressure everywhere [m3/Pa] (n_cells).
+  const Eigen::VectorXd& lumped_compliance() const { return lumped_; }
+  /// C p of the implicit route.
+  void multiply_compliance(const Eigen::VectorXd& p, Eigen::VectorXd& product);
 
-  /// C of the last factorise [m3/Pa] (n_cells, n_cells), symmetric.
-  const Eigen::MatrixXd& compliance() const;
-
-  /// B S^-1 r and, for a pressure p, dx = S^-1 (r + B^T p). The two calls share the factor; each is one solve.
-  Eigen::VectorXd compute_gap_response(const Eigen::VectorXd& r);
-  Eigen::VectorXd solve_displacement(const Eigen::VectorXd& r, const Eigen::VectorXd& gap_response,
-                                     const Eigen::VectorXd& pressure);
-
-  /// The shift e, part of the state: it decides the rounding of C. 0 before the first factorise.
-  double shift() const;
-  void set_shift(double shift);
+  /// B S^-1 r; keeps r for solve_displacement.
+  void solve_gap_response(const Eigen::VectorXd& r, Eigen::VectorXd& gap_response);
+  /// dx = S^-1 (r + B^T p) with the r of the last solve_gap_response.
+  void solve_displacement(const Eigen::VectorXd& pressure, Eigen::VectorXd& dx);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  template <typename Visit>
+  void with_factor(Visit visit);
+
+  std::shared_ptr<const FactorAnalysis> analysis_;
+  std::unique_ptr<SupernodalFactor<float>> single_;
+  std::unique_ptr<SupernodalFactor<double>> double_;
+  bool is_single_ = true;
+  Eigen::SparseMatrix<double> derivative_;
+  Eigen::MatrixXd compliance_;
+  Eigen::VectorXd lumped_;
+  Eigen::VectorXd nothing_;   ///< no pressures
+  Eigen::VectorXd of_force_;  ///< S^-1 r of the implicit route
+  Eigen::VectorXd right_side_;
+  Eigen::VectorXd solution_;
 };
 
 }  // namespace lipofill::coupling

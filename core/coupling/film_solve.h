@@ -9,7 +9,7 @@
 namespace lipofill::coupling {
 
 /// Cells of all films, one film after the other.
-struct FilmSolveResult {
+struct FilmSolution {
   Eigen::VectorXd pressure;           ///< [Pa]
   Eigen::VectorXd volume;             ///< V' [m3], from fluxes
   Eigen::VectorXd void_volume;        ///< gap that is neither fat nor closed, behind a front at the suction limit [m3]
@@ -17,6 +17,13 @@ struct FilmSolveResult {
   int iterations = 0;
   bool converged = false;
   double change = 0.0;  ///< of the volume in the last iteration, relative to the fullest cell
+};
+
+/// How exactly a film step is solved, relative to the volume of the fullest cell. A solution with a negative volume is
+/// solved on to the tolerances of this type's own.
+struct FilmTolerance {
+  double change = 1e-10;    ///< of the volume, from one iteration on the thickness to the next
+  double mismatch = 1e-11;  ///< of gap and volume in a cell
 };
 
 /// Solves the film's step with the mobility at the new thickness: Picard iteration on the thickness, and in each of its
@@ -27,11 +34,49 @@ struct FilmSolveResult {
 /// with g0 the gap at zero pressure and V' the film's volume by its fluxes (film_projection.h), by Newton's method with
 /// a line search; cells at the suction limit are held (a primal-dual active set). Linear films without a limit need one
 /// solve. Stable and positive at any step once converged.
-/// @param lowest  the suction limit of each cell [Pa] (n), minus infinity: none; empty: none anywhere
-/// @param start   pressure, volume and flux to start from (those at the start of the step)
 /// Checked by tests/unit/coupling/film_solve_test.cc and tests/verification/film/.
-FilmSolveResult solve_films(std::vector<film::FilmProjection*> films, const WallCompliance& walls,
-                            const Eigen::VectorXd& gap_without_pressure, const Eigen::VectorXd& lowest,
-                            const FilmSolveResult& start);
+class FilmSolver {
+ public:
+  explicit FilmSolver(std::vector<film::FilmProjection*> films);
+
+  PressureSolver& pressure_solver() { return solver_; }
+  const PressureSolver& pressure_solver() const { return solver_; }
+
+  /// @param lowest    the suction limit of each cell [Pa] (n), minus infinity: none; empty: none anywhere
+  /// @param solution  pressure, volume and flux to start from; becomes the solution
+  void solve(const Eigen::VectorXd& gap_without_pressure, const Eigen::VectorXd& lowest, FilmTolerance tolerance,
+             FilmSolution& solution);
+
+  /// Takes the mobility that solves of many cells are preconditioned with from the volumes and fluxes of a state, as
+  /// the values of dt J of each film.
+  void measure_mobility(const FilmSolution& at, std::vector<Eigen::VectorXd>& mobility);
+
+ private:
+  bool has_limit() const { return lowest_->size() > 0; }
+  void begin_directions(const FilmSolution& solution);
+  void turn_directions(const FilmSolution& solution);
+  void set_thickness(const Eigen::VectorXd& volume);
+  bool solve_pressure(double tolerance, FilmSolution& solution);
+  void evaluate(FilmSolution& solution);
+  void hold_cells_at_the_limit(const Eigen::VectorXd& p);
+  double mismatch(const Eigen::VectorXd& volume) const;
+  void keep_void(FilmSolution& solution) const;
+  void advance(FilmSolution& solution);
+  void go(double share, FilmSolution& solution);
+
+  std::vector<film::FilmProjection*> films_;
+  PressureSolver solver_;
+  const Eigen::VectorXd* gap_ = nullptr;
+  const Eigen::VectorXd* lowest_ = nullptr;
+  bool is_linear_ = true;
+  std::vector<char> held_;
+  std::vector<Eigen::VectorXd> direction_;  ///< flux whose sign tells where each edge is upwind
+  std::vector<Eigen::VectorXi> turns_;      ///< of that, in the step under way
+  Eigen::VectorXd guess_;                   ///< volume whose thickness the mobility has
+  Eigen::VectorXd moved_;                   ///< C p
+  Eigen::VectorXd residual_;                ///< r = V' - g0 - C p
+  Eigen::VectorXd step_, moved_step_;       ///< dp and C dp
+  Eigen::VectorXd start_, moved_start_;
+};
 
 }  // namespace lipofill::coupling

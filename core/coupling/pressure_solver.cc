@@ -1,38 +1,94 @@
 #include "core/coupling/pressure_solver.h"
 
-#include <algorithm>
+#include <utility>
+
+#include "core/coupling/algebra_threads.h"
+#include "core/coupling/blas.h"
 
 namespace lipofill::coupling {
+namespace {
 
-Eigen::VectorXd WallCompliance::times(const Eigen::VectorXd& p) const {
-  if (full != nullptr) return *full * p;
-  return diagonal.cwiseProduct(p);
+constexpr int kMaxImplicitIterations = 200;
+
+}  // namespace
+
+PressureSolver::PressureSolver(std::vector<film::FilmProjection*> films)
+    : films_(std::move(films)), matrices_(films_.size()) {
+  for (const film::FilmProjection* film : films_) n_ += film->grid().n_cells();
 }
 
-PressureSolver::PressureSolver(const std::vector<film::FilmProjection*>& films, const WallCompliance& walls, int n)
-    : films_(films), walls_(walls), n_(n), matrices_(films.size()) {
-  find_rigid_components();
+void PressureSolver::set_walls(WallCompliance walls) {
+  const bool is_first = walls_.diagonal.size() == 0 && walls_.dense == nullptr;
+  walls_ = std::move(walls);
+  if (is_first) find_rigid_components();
 }
 
-bool PressureSolver::solve(const Eigen::VectorXd& p, const std::vector<char>& held, const Eigen::VectorXd& r,
-                           Eigen::VectorXd& dp) {
+void PressureSolver::multiply_walls(const Eigen::VectorXd& p, Eigen::VectorXd& product) const {
+  if (is_lagged()) {
+    compliance_.multiply(p, product);
+  } else {
+    walls_.multiply(p, product);
+  }
+}
+
+/// A lagged solve that takes longer than the direct one does is given up.
+int PressureSolver::max_iterations() const {
+  return walls_.tissue != nullptr ? kMaxImplicitIterations : 10 + n_ / 40;
+}
+
+void PressureSolver::keep_mobility(const std::vector<Eigen::VectorXd>& mobility) {
+  keep_algebra_on_this_thread();
+  compliance_.assign(*walls_.dense);
+  lagged_scale_ = 1.0 / walls_.dense->diagonal().maxCoeff();
+  lagged_ = (lagged_scale_ * *walls_.dense).cast<float>();
+  int offset = 0;
+  for (size_t f = 0; f < films_.size(); ++f) {
+    const Eigen::SparseMatrix<double>& pattern = films_[f]->pattern();
+    const double* value = mobility[f].data();
+    for (int column = 0; column < pattern.outerSize(); ++column) {
+      for (Eigen::SparseMatrix<double>::InnerIterator it(pattern, column); it; ++it) {
+        lagged_(offset + it.row(), offset + column) += static_cast<float>(lagged_scale_ * *value++);
+      }
+    }
+    offset += films_[f]->grid().n_cells();
+  }
+  if (!blas::factor_lower(n_, lagged_.data(), n_)) lagged_.setIdentity();
+}
+
+void PressureSolver::set_mobility(const Eigen::VectorXd& p) {
   int offset = 0;
   for (size_t f = 0; f < films_.size(); ++f) {
     const int n = films_[f]->grid().n_cells();
     matrices_[f] = &films_[f]->linearise(p.segment(offset, n));
     offset += n;
   }
-  held_ = &held;
-  Eigen::VectorXd right = r;
-  for (int i = 0; i < n_; ++i) {
-    if (held[i]) right[i] = 0.0;
-  }
-  const bool solved = walls_.full != nullptr ? solve_full(right, dp) : solve_sparse(right, dp);
-  return solved && dp.allFinite();
 }
 
-bool PressureSolver::solve_full(const Eigen::VectorXd& r, Eigen::VectorXd& dp) {
-  system_ = *walls_.full;
+bool PressureSolver::solve(const Eigen::VectorXd& p, const std::vector<char>& held, const Eigen::VectorXd& r,
+                           double tolerance, Eigen::VectorXd& dp, Eigen::VectorXd& moved) {
+  set_mobility(p);
+  held_ = &held;
+  right_ = r;
+  hold(right_);
+  if (is_lagged()) {
+    const auto precondition = [this](const Eigen::VectorXd& from, Eigen::VectorXd& to) { apply_lagged(from, to); };
+    if (solve_iteratively(right_, tolerance, precondition, dp, moved)) return true;
+    ++fallbacks_;
+  }
+  if (walls_.tissue != nullptr) {
+    const auto precondition = [this](const Eigen::VectorXd& from, Eigen::VectorXd& to) { to = sparse_.solve(from); };
+    return factor_sparse() && solve_iteratively(right_, tolerance, precondition, dp, moved);
+  }
+  const bool is_solved = walls_.dense != nullptr ? solve_dense(right_, dp) : factor_sparse();
+  if (!is_solved) return false;
+  if (walls_.dense == nullptr) dp = sparse_.solve(right_);
+  multiply_walls(dp, moved);
+  return dp.allFinite();
+}
+
+bool PressureSolver::solve_dense(const Eigen::VectorXd& r, Eigen::VectorXd& dp) {
+  keep_algebra_on_this_thread();
+  system_ = *walls_.dense;
   for_each_entry([&](int row, int column, double value) { system_(row, column) += value; });
   for (const int i : gauge_cells_) system_(i, i) *= 2.0;
   for (int i = 0; i < n_; ++i) {
@@ -42,13 +98,15 @@ bool PressureSolver::solve_full(const Eigen::VectorXd& r, Eigen::VectorXd& dp) {
     system_.col(i).setZero();
     system_(i, i) = diagonal;
   }
-  dense_.compute(system_);
-  if (dense_.info() != Eigen::Success) return false;
-  dp = dense_.solve(r);
+  if (!blas::factor_lower(n_, system_.data(), n_)) return false;
+  dp = r;
+  blas::solve_lower(n_, system_.data(), n_, dp.data(), false);
+  blas::solve_lower(n_, system_.data(), n_, dp.data(), true);
   return true;
 }
 
-bool PressureSolver::solve_sparse(const Eigen::VectorXd& r, Eigen::VectorXd& dp) {
+/// LDL^T of J + the diagonal.
+bool PressureSolver::factor_sparse() {
   std::vector<Eigen::Triplet<double>> triplets;
   triplets.reserve(10 * static_cast<size_t>(n_));
   Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n_);
@@ -59,34 +117,95 @@ bool PressureSolver::solve_sparse(const Eigen::VectorXd& r, Eigen::VectorXd& dp)
   });
   for (int i = 0; i < n_; ++i) triplets.emplace_back(i, i, walls_.diagonal[i]);
   for (const int i : gauge_cells_) triplets.emplace_back(i, i, diagonal[i]);
-  Eigen::SparseMatrix<double> system(n_, n_);
-  system.setFromTriplets(triplets.begin(), triplets.end());
-  if (!analysed_) sparse_.analyzePattern(system);
-  analysed_ = true;
-  sparse_.factorize(system);
-  if (sparse_.info() != Eigen::Success) return false;
-  dp = sparse_.solve(r);
-  return true;
+  sparse_system_.resize(n_, n_);
+  sparse_system_.setFromTriplets(triplets.begin(), triplets.end());
+  if (!is_analysed_) sparse_.analyzePattern(sparse_system_);
+  is_analysed_ = true;
+  sparse_.factorize(sparse_system_);
+  return sparse_.info() == Eigen::Success;
+}
+
+/// Conjugate gradients from dp = 0, in the cells that are not held. False: no descent, or too many iterations.
+template <typename Precondition>
+bool PressureSolver::solve_iteratively(const Eigen::VectorXd& r, double tolerance, Precondition precondition,
+                                       Eigen::VectorXd& dp, Eigen::VectorXd& moved) {
+  const int most = max_iterations();
+  ++iterative_solves_;
+  dp.setZero(n_);
+  moved.setZero(n_);
+  residual_ = r;
+  double last_descent = 0.0;
+  for (int k = 0; k <= most; ++k) {
+    if (residual_.cwiseAbs().maxCoeff() <= tolerance) return true;
+    if (k == most) break;
+    precondition(residual_, conditioned_);
+    hold(conditioned_);
+    const double descent = residual_.dot(conditioned_);
+    if (!(descent > 0.0)) return false;
+    if (k == 0) {
+      direction_ = conditioned_;
+    } else {
+      direction_ = conditioned_ + (descent / last_descent) * direction_;
+    }
+    multiply_walls(direction_, moved_direction_);
+    product_ = moved_direction_;
+    add_mobility(direction_, product_);
+    hold(product_);
+    const double curvature = direction_.dot(product_);
+    if (!(curvature > 0.0)) return false;
+    const double share = descent / curvature;
+    dp += share * direction_;
+    moved += share * moved_direction_;
+    residual_ -= share * product_;
+    last_descent = descent;
+    ++iterations_;
+  }
+  return false;
+}
+
+void PressureSolver::apply_lagged(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+  const double size = r.cwiseAbs().maxCoeff();
+  if (size == 0.0) {
+    z.setZero(n_);
+    return;
+  }
+  lagged_work_ = (r / size).cast<float>();
+  blas::solve_lower(n_, lagged_.data(), n_, lagged_work_.data(), false);
+  blas::solve_lower(n_, lagged_.data(), n_, lagged_work_.data(), true);
+  z = (size * lagged_scale_) * lagged_work_.cast<double>();
+}
+
+void PressureSolver::add_mobility(const Eigen::VectorXd& p, Eigen::VectorXd& product) const {
+  int offset = 0;
+  for (const Eigen::SparseMatrix<double>* j : matrices_) {
+    product.segment(offset, j->cols()).noalias() += *j * p.segment(offset, j->cols());
+    offset += static_cast<int>(j->cols());
+  }
+}
+
+void PressureSolver::hold(Eigen::VectorXd& values) const {
+  for (int i = 0; i < n_; ++i) {
+    if ((*held_)[i]) values[i] = 0.0;
+  }
 }
 
 template <typename Visit>
 void PressureSolver::for_each_entry(Visit visit) const {
   int offset = 0;
-  for (size_t f = 0; f < films_.size(); ++f) {
-    const Eigen::SparseMatrix<double>& j = *matrices_[f];
-    for (int column = 0; column < j.outerSize(); ++column) {
-      for (Eigen::SparseMatrix<double>::InnerIterator it(j, column); it; ++it) {
+  for (const Eigen::SparseMatrix<double>* j : matrices_) {
+    for (int column = 0; column < j->outerSize(); ++column) {
+      for (Eigen::SparseMatrix<double>::InnerIterator it(*j, column); it; ++it) {
         visit(offset + static_cast<int>(it.row()), offset + column, it.value());
       }
     }
-    offset += films_[f]->grid().n_cells();
+    offset += static_cast<int>(j->cols());
   }
 }
 
 /// First cell of every connected component without any compliance. Leaky walls connect.
 void PressureSolver::find_rigid_components() {
   const Eigen::VectorXd compliance =
-      walls_.full != nullptr ? Eigen::VectorXd(walls_.full->diagonal()) : walls_.diagonal;
+      walls_.dense != nullptr ? Eigen::VectorXd(walls_.dense->diagonal()) : walls_.diagonal;
   int offset = 0;
   for (const film::FilmProjection* film : films_) {
     const film::FilmGrid& grid = film->grid();

@@ -68,6 +68,8 @@ class PressureOperator {
   /// factor (G^T W G + leaks). About 10 ns a cell; allocates nothing.
   /// @param leaks  conductance of every leaky wall of the grid, in the same unit as the forms
   const Eigen::SparseMatrix<double>& assemble(const QuadrantForms& forms, const Eigen::VectorXd& leaks, double factor);
+  /// Of the last assemble.
+  const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
 
  private:
   /// Where what a cell's quadrants say goes among the values. Of sealed sides that is zero, and goes to the cell's own

@@ -49,6 +49,8 @@ class FilmProjection {
   bool is_linear() const { return law_.is_linear(); }
   /// -dV'/dp = dt J at a pressure [m3/Pa]; both triangles, in a pattern that never changes.
   const Eigen::SparseMatrix<double>& linearise(const Values& pressure);
+  /// The matrix of the last linearise, for its pattern.
+  const Eigen::SparseMatrix<double>& pattern() const { return pressure_operator_.matrix(); }
   /// F at a pressure, through the open edges and then the leaky walls [m3/s] (n_edges + n_leaky_walls).
   void compute_flux(const Values& pressure, Eigen::VectorXd& flux);
   Eigen::VectorXd compute_flux(const Values& pressure);

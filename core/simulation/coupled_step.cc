@@ -20,6 +20,8 @@ constexpr double kPromptForceTolerance = 1e-2;
 constexpr double kLeastGain = 0.3;
 /// Iterations of a step that a new factor would need too.
 constexpr int kPromptIterations = 2;
+/// Iterations of conjugate gradients that a solve with an up-to-date preconditioner would need too.
+constexpr int kPromptPressureIterations = 2;
 /// Sum over cells of |gap - film| over the film's volume; well inside the 1e-4 that is promised.
 constexpr double kGapTolerance = 2e-5;
 
@@ -50,14 +52,16 @@ StepOutcome CoupledStep::try_step(const SimulationState& state, const std::vecto
   StepOutcome outcome;
   outcome.state = state;
   enter_injected_cells(injected, outcome.state);
-  begin_film_step(outcome.state, injected, dt);
-  coupling::FilmSolveResult solution;
-  solution.pressure = gather(state, &FilmState::pressure);
-  solution.volume = gather(state, &FilmState::volume);
-  for (const FilmState& film : state.films) solution.flux.push_back(film.velocity);
+  {
+    const PhaseTimer timer(cost_.times.film);
+    begin_film_step(outcome.state, injected, dt);
+  }
+  coupling::FilmSolution solution;
+  predict(state, dt, outcome.state, solution);
   if (!solve_tissue_and_films(state, dt, outcome, solution)) return outcome;
   outcome.void_volume = solution.void_volume;
   finish_tissue(state, dt, outcome);
+  const PhaseTimer timer(cost_.times.film);
   finish_films(state, dt, solution, outcome.state);
   outcome.state.time = state.time + dt;
   outcome.state.step = state.step + 1;
@@ -66,38 +70,62 @@ StepOutcome CoupledStep::try_step(const SimulationState& state, const std::vecto
   return outcome;
 }
 
+/// Carries the last step on: where the iteration starts.
+void CoupledStep::predict(const SimulationState& from, double dt, SimulationState& next,
+                          coupling::FilmSolution& solution) {
+  solution.pressure = gather(from, &FilmState::pressure) + dt * gather(from, &FilmState::pressure_rate);
+  solution.volume = gather(from, &FilmState::volume) + dt * gather(from, &FilmState::volume_rate);
+  solution.volume = solution.volume.cwiseMax(0.0);
+  solution.flux.clear();
+  for (const FilmState& film : from.films) solution.flux.push_back(film.velocity);
+  if (!tissue_ || from.velocities.isZero(0.0)) return;
+  next.positions = from.positions + dt * from.velocities;
+  bring_forces_to(next, dt);
+  if (tissue_->tissue.min_volume_ratio() <= 0.0) next.positions = from.positions;
+}
+
+bool CoupledStep::solve_films(const Eigen::VectorXd& gap_without_pressure, const Eigen::VectorXd& lowest,
+                              StepOutcome& outcome, coupling::FilmSolution& solution) {
+  const PhaseTimer timer(cost_.times.film);
+  const coupling::PressureSolver& pressures = film_solver_->pressure_solver();
+  const long solves = pressures.iterative_solves();
+  const long iterations = pressures.iterations();
+  const long fallbacks = pressures.fallbacks();
+  film_solver_->solve(gap_without_pressure, lowest, film_tolerance(), solution);
+  const auto spent = static_cast<int>(pressures.iterations() - iterations);
+  const auto prompt = kPromptPressureIterations * static_cast<int>(pressures.iterative_solves() - solves);
+  cost_.iterative_iterations += spent;
+  outcome.state.late_pressure_iterations += std::max(0, spent - prompt);
+  cost_.fallbacks += static_cast<int>(pressures.fallbacks() - fallbacks);
+  cost_.film_iterations += solution.iterations;
+  outcome.film_iterations += solution.iterations;
+  if (solution.converged) return true;
+  outcome.reason = absl::StrCat("the film did not converge in ", solution.iterations, " iterations (change ",
+                                solution.change, ", least volume ", solution.volume.minCoeff() * 1e9, " mm3 a cell)");
+  return false;
+}
+
 bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt, StepOutcome& outcome,
-                                         coupling::FilmSolveResult& solution) {
-  std::vector<film::FilmProjection*> projections;
-  for (const auto& projection : projections_) projections.push_back(projection.get());
+                                         coupling::FilmSolution& solution) {
   const Eigen::VectorXd lowest = lowest_pressure(outcome.state);
-  if (!begin_tissue_step(from, dt, outcome)) return false;
+  outcome.film_iterations = 0;
+  if (!begin_tissue_step(from, dt, outcome, solution)) return false;
   double last_error = std::numeric_limits<double>::infinity();
   for (outcome.newton_iterations = 1; outcome.newton_iterations <= kMaxNewtonIterations; ++outcome.newton_iterations) {
+    ++cost_.newton_iterations;
     const double force_tolerance = tissue_ && is_late(outcome) ? kForceTolerance : kPromptForceTolerance;
-    const Eigen::VectorXd pressure = gather_tissue_part(solution.pressure);
     Eigen::VectorXd gap_without_pressure = rest_volume_;
-    Eigen::VectorXd force, response;
     if (tissue_) {
-      force = force_ + coupling_force(pressure);
-      response = factor_->compute_gap_response(force);
+      const Eigen::VectorXd force = force_ + coupling_force(gather_tissue_part(solution.pressure));
+      const PhaseTimer timer(cost_.times.solve);
+      Eigen::VectorXd response;
+      factor_->solve_gap_response(force, response);
       for (size_t k = 0; k < cell_of_tissue_.size(); ++k) {
         gap_without_pressure[cell_of_tissue_[k]] += gaps_->volume()[k] + response[k];
       }
     }
-    solution = coupling::solve_films(projections, wall_compliance(), gap_without_pressure, lowest, solution);
-    outcome.film_iterations += solution.iterations;
-    if (!solution.converged) {
-      outcome.reason =
-          absl::StrCat("the film did not converge in ", solution.iterations, " iterations (change ", solution.change,
-                       ", least volume ", solution.volume.minCoeff() * 1e9, " mm3 a cell)");
-      return false;
-    }
-    if (tissue_ &&
-        !move_tissue(from, dt, factor_->solve_displacement(force, response, gather_tissue_part(solution.pressure)),
-                     outcome)) {
-      return false;
-    }
+    if (!solve_films(gap_without_pressure, lowest, outcome, solution)) return false;
+    if (tissue_ && !move_tissue(from, dt, gather_tissue_part(solution.pressure), outcome)) return false;
     const double error = measure_error(solution, force_tolerance, outcome);
     // The barrier against elements turned inside out (solid/inversion_barrier.h) drives folded ones back.
     if (error <= 1.0 && outcome.min_scaled_jacobian > 0.0) {
@@ -107,7 +135,7 @@ bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt,
     const bool converges = error <= kLeastGain * last_error;
     last_error = error;
     if (!tissue_ || converges || !is_late(outcome)) continue;
-    if (!renew_factor(dt, outcome)) return false;
+    if (!renew_factor(dt, outcome, solution)) return false;
     last_error = std::numeric_limits<double>::infinity();
   }
   outcome.reason =
@@ -119,8 +147,9 @@ bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt,
 }
 
 /// How far gap and forces are from where they must be, in tolerances.
-double CoupledStep::measure_error(const coupling::FilmSolveResult& solution, double force_tolerance,
-                                  StepOutcome& outcome) const {
+double CoupledStep::measure_error(const coupling::FilmSolution& solution, double force_tolerance,
+                                  StepOutcome& outcome) {
+  const PhaseTimer timer(cost_.times.coupling);
   outcome.gap = gap_of_walls(solution.pressure);
   if (!tissue_) return gap_error(outcome.gap, solution.volume + solution.void_volume) / kGapTolerance;
   for (size_t k = 0; k < cell_of_tissue_.size(); ++k) outcome.gap[cell_of_tissue_[k]] += gaps_->volume()[k];

@@ -15,6 +15,7 @@
 #include "core/simulation/film_layout.h"
 #include "core/simulation/simulation_spec.h"
 #include "core/simulation/simulation_state.h"
+#include "core/simulation/step_cost.h"
 #include "core/simulation/tissue_setup.h"
 
 namespace lipofill::simulation {
@@ -32,7 +33,6 @@ struct StepOutcome {
   Eigen::VectorXd spring_length;     ///< [m]
   double min_scaled_jacobian = 1.0;  ///< of the tissue at the new positions
   double error = 0.0;                ///< estimate of the step's own, set by the simulation [m]
-  int factorisations = 0;
   int film_iterations = 0;
   int newton_iterations = 0;
 };
@@ -50,8 +50,12 @@ struct StepOutcome {
 ///
 ///     S0 dx - B0^T p' = f(x) + (B(x) - B0)^T p,     B0 dx + J p' = d(x)
 ///
-/// A factor is kept until iterations stop converging fast or have cost as much as a new one. Which factor is in use is
-/// part of the state, so that a restored simulation goes on with the same bits.
+/// A factor is kept until iterations stop converging fast or have cost as much as a new one. It is made in float32;
+/// where that is not enough (no positive pivots, or a solve under load that leaves more than kFactorTolerance of the
+/// load), in float64 from then on. Which factor is in use is part of the state, so that a restored simulation goes on
+/// with the same bits.
+///
+/// A step starts from the last one carried on: x + dt v, p + dt dp/dt, V + dt dV/dt.
 class CoupledStep {
  public:
   static absl::StatusOr<std::unique_ptr<CoupledStep>> create(const FaceModel& model,
@@ -76,14 +80,14 @@ class CoupledStep {
   const Eigen::VectorXd& rest_area(int film) const { return rest_area_[film]; }
   /// Figures of a state that does not come from try_step: gap, void, energies, springs.
   StepOutcome describe(const SimulationState& state);
-  double shift() const { return factor_ ? factor_->shift() : 0.0; }
-  void set_shift(double shift) {
-    if (factor_) factor_->set_shift(shift);
-  }
+  /// What was spent since reset_cost.
+  const StepCost& cost() const { return cost_; }
+  void reset_cost() { cost_ = {}; }
 
  private:
   CoupledStep(const FaceModel& model, const std::vector<FilmLayout>& films, const SimulationSpec& spec);
   absl::Status set_up();
+  absl::Status analyse();
   absl::Status check_every_cell_can_open();
   bool open_to(const Eigen::VectorXd& target, double tolerance, SimulationState& state, Eigen::VectorXd& pressure);
 
@@ -92,36 +96,46 @@ class CoupledStep {
   void assemble(const SimulationState& state, double dt);
   void set_springs(const SimulationState& state);
   /// The tissue's side of a Newton iteration: assembles at x and factors. False: not positive definite.
-  bool linearise_tissue(const SimulationState& state, double dt);
+  bool linearise_tissue(const SimulationState& state, double dt, coupling::Precision precision);
   /// Factors where the state says that it was factored last, unless that is the factor at hand. False: it cannot.
   bool take_up_factor(const SimulationState& state);
   bool factor_here(double dt, SimulationState& state);
+  void keep_mobility(const SimulationState& state);
+  void take_up_mobility(const SimulationState& state);
+  void renew_mobility(SimulationState& state, const coupling::FilmSolution& at);
+  double measure_factor_error();
+  void predict(const SimulationState& from, double dt, SimulationState& next, coupling::FilmSolution& solution);
   Eigen::VectorXd coupling_force(const Eigen::VectorXd& pressure) const;
   double force_error(const Eigen::VectorXd& force, const Eigen::VectorXd& pressure) const;
   Eigen::VectorXd compute_residual_force(const SimulationState& from, const Eigen::Matrix3Xd& x, double dt) const;
   void begin_film_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt);
   Eigen::VectorXd move_freely(size_t film_index, const FilmState& film, const film::Fat& fat, double dt);
   coupling::WallCompliance wall_compliance();
+  bool is_implicit() const { return tissue_ && !factor_->has_compliance(); }
+  coupling::FilmTolerance film_tolerance() const;
   Eigen::VectorXd gather_tissue_part(const Eigen::VectorXd& all_cells) const;
   void add_displacement(const Eigen::VectorXd& dx, Eigen::Matrix3Xd& x) const;
   Eigen::VectorXd gap_of_walls(const Eigen::VectorXd& pressure) const;
   Eigen::VectorXd lowest_pressure(const SimulationState& state) const;
   double gap_error(const Eigen::VectorXd& gap, const Eigen::VectorXd& volume) const;
   void enter_injected_cells(const std::vector<Eigen::VectorXd>& injected, SimulationState& state) const;
-  void finish_films(const SimulationState& from, double dt, const coupling::FilmSolveResult& solution,
+  void finish_films(const SimulationState& from, double dt, const coupling::FilmSolution& solution,
                     SimulationState& next) const;
   void finish_tissue(const SimulationState& from, double dt, StepOutcome& outcome);
   int n_ligament_springs() const;
   Eigen::VectorXd compute_gap(const SimulationState& state);
   Eigen::VectorXd gather(const SimulationState& state, Eigen::VectorXd FilmState::*values) const;
   void describe_tissue(StepOutcome& outcome, double dt);
-  bool begin_tissue_step(const SimulationState& from, double dt, StepOutcome& outcome);
-  bool renew_factor(double dt, StepOutcome& outcome);
+  bool begin_tissue_step(const SimulationState& from, double dt, StepOutcome& outcome,
+                         const coupling::FilmSolution& start);
+  bool renew_factor(double dt, StepOutcome& outcome, const coupling::FilmSolution& at);
   bool is_late(const StepOutcome& outcome) const;
-  bool move_tissue(const SimulationState& from, double dt, const Eigen::VectorXd& dx, StepOutcome& outcome);
-  double measure_error(const coupling::FilmSolveResult& solution, double force_tolerance, StepOutcome& outcome) const;
+  bool move_tissue(const SimulationState& from, double dt, const Eigen::VectorXd& pressure, StepOutcome& outcome);
+  double measure_error(const coupling::FilmSolution& solution, double force_tolerance, StepOutcome& outcome);
   bool solve_tissue_and_films(const SimulationState& from, double dt, StepOutcome& outcome,
-                              coupling::FilmSolveResult& solution);
+                              coupling::FilmSolution& solution);
+  bool solve_films(const Eigen::VectorXd& gap_without_pressure, const Eigen::VectorXd& lowest, StepOutcome& outcome,
+                   coupling::FilmSolution& solution);
 
   const FaceModel& model_;
   const std::vector<FilmLayout>& films_;
@@ -139,6 +153,7 @@ class CoupledStep {
   std::vector<Eigen::VectorXd> rest_area_;
   std::vector<film::FilmMetric> rest_metric_;
   std::vector<std::unique_ptr<film::FilmProjection>> projections_;
+  std::unique_ptr<coupling::FilmSolver> film_solver_;
   std::vector<film::ImplicitViscosity> viscosity_;
   std::vector<film::FilmMetric> metric_;  ///< of the step under way
   Eigen::Matrix3Xd forces_positions_;     ///< where the tissue's forces are
@@ -146,9 +161,12 @@ class CoupledStep {
   Eigen::Matrix3Xd factored_positions_;  ///< of the factor at hand
   Eigen::VectorXd factored_springs_;
   double factored_dt_ = 0.0;
-  Eigen::SparseMatrix<double> factored_derivative_;  ///< B0
-  double least_force_ = 0.0;                         ///< what counts as no force beside it [N]
-  Eigen::VectorXd force_;                            ///< residual force without that of the films [N]
+  coupling::Precision factored_precision_ = coupling::Precision::kSingle;
+  std::vector<Eigen::VectorXd> kept_mobility_;  ///< of each film, in the preconditioner at hand
+  bool has_lagged_mobility_ = false;            ///< the state keeps the mobility that pressures are preconditioned with
+  StepCost cost_;
+  double least_force_ = 0.0;         ///< what counts as no force beside it [N]
+  Eigen::VectorXd force_;            ///< residual force without that of the films [N]
   Eigen::MatrixXd full_compliance_;  ///< of all cells, when films with other walls stand beside those on tissue
 };
 

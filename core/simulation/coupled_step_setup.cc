@@ -15,6 +15,9 @@ constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 /// A session that needs more would crowd out the others.
 constexpr double kMaxFactorBytes = 4.0 * kGibibyte;
 
+/// Films on tissue of more cells have no dense compliance: it would take longer than the solves that it saves, and more
+/// memory than the factor.
+constexpr int kMaxDenseCells = 4096;
 /// Of stiffness times extent: a balance of forces this small is round-off.
 constexpr double kLeastForceShare = 1e-10;
 
@@ -67,6 +70,9 @@ absl::Status CoupledStep::set_up() {
                       tissue_->tissue.n_dofs());
     for (int cell = 0; cell < film.grid.n_cells(); ++cell) cell_of_tissue_.push_back(offset + cell);
   }
+  std::vector<film::FilmProjection*> films;
+  for (const auto& projection : projections_) films.push_back(projection.get());
+  film_solver_ = std::make_unique<coupling::FilmSolver>(std::move(films));
   if (tissue_) {
     if (tissue_->tissue.n_dofs() == 0)
       return field_violation("model", "holds every node of its tissue: nothing can move");
@@ -74,12 +80,7 @@ absl::Status CoupledStep::set_up() {
     const double extent = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
     least_force_ = kLeastForceShare * tissue_->tissue.system_matrix().diagonal().norm() * extent;
     gaps_ = std::make_unique<coupling::GapSystem>(std::move(gaps), tissue_->tissue.n_dofs());
-    factor_ = std::make_unique<coupling::CoupledFactor>(tissue_->tissue.system_matrix(), gaps_->derivative());
-    if (factor_->factor_bytes() > kMaxFactorBytes) {
-      return field_violation("model", absl::StrCat("needs ", factor_->factor_bytes() / kGibibyte,
-                                                   " GiB to factor with these films, must be at most ",
-                                                   kMaxFactorBytes / kGibibyte, " GiB: take fewer hexahedra"));
-    }
+    if (const absl::Status status = analyse(); !status.ok()) return status;
     const absl::Status status = check_every_cell_can_open();
     if (!status.ok()) return status;
   }
@@ -100,6 +101,25 @@ absl::Status CoupledStep::set_up() {
       rest_volume_[cell_offset_[f] + cell] = rest_area_[f][cell] * film.rest_thickness.at(centre.xi, centre.eta);
     }
   }
+  return absl::OkStatus();
+}
+
+/// With the pressures in the factorisation, where there are few enough.
+absl::Status CoupledStep::analyse() {
+  const Eigen::SparseMatrix<double>& s = tissue_->tissue.system_matrix();
+  const Eigen::SparseMatrix<double>& b = gaps_->derivative();
+  const bool is_dense = b.rows() <= kMaxDenseCells;
+  auto analysis = coupling::FactorAnalysis::create(s, is_dense ? b : Eigen::SparseMatrix<double>(0, b.cols()));
+  if (!analysis.ok()) return field_violation("model", std::string(analysis.status().message()));
+  const double bytes = static_cast<double>((*analysis)->n_values()) * sizeof(float);
+  if (bytes > kMaxFactorBytes) {
+    return field_violation(
+        "model", absl::StrCat("needs ", bytes / kGibibyte, " GiB to factor with these films, must be at most ",
+                              kMaxFactorBytes / kGibibyte, " GiB: take fewer hexahedra"));
+  }
+  factor_ = std::make_unique<coupling::CoupledFactor>(*std::move(analysis));
+  has_lagged_mobility_ =
+      is_dense && coupling_ == CouplingMode::kExact && cell_offset_.back() > coupling::PressureSolver::kMaxDirectCells;
   return absl::OkStatus();
 }
 
@@ -141,6 +161,8 @@ SimulationState CoupledStep::rest_state() const {
     film.pressure.setZero(grid.n_cells());
     film.velocity.setZero(grid.n_edges());
     film.volume_rate.setZero(grid.n_cells());
+    film.pressure_rate.setZero(grid.n_cells());
+    if (has_lagged_mobility_) film.factored_mobility.setZero(projections_[f]->pattern().nonZeros());
     if (fat_.is_elastic()) film.wall_stress.setZero(grid.n_edges());
     if (films_[f].connective_tissue.entry_pressure > 0.0) film.is_entered.setZero(grid.n_cells());
     state.films.push_back(std::move(film));

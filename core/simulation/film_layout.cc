@@ -18,7 +18,7 @@ constexpr double kMetrePerMillimetre = 1e-3;
 constexpr double kStiffnessUnit = 1e6;  ///< Pa/m in a kPa/mm
 constexpr int kMaxFilmCells = 65536;
 /// A film on tissue solves a dense system in its cells.
-constexpr int kMaxTissueFilmCells = 4096;
+constexpr int kMaxTissueFilmCells = 16384;
 constexpr double kCoarsestRatio = 2.0;
 constexpr double kThickest_mm = 50.0;
 

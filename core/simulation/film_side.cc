@@ -76,6 +76,13 @@ Eigen::VectorXd CoupledStep::move_freely(size_t f, const FilmState& film, const 
   return film::advect_velocity(grid, metric_[f], viscous, dt);
 }
 
+/// On tissue a step is solved again from new positions, so that its films need be no more exact than that.
+coupling::FilmTolerance CoupledStep::film_tolerance() const {
+  if (cell_of_tissue_.empty()) return {};
+  if (is_implicit()) return {1e-5, 1e-6};
+  return {1e-8, 1e-9};
+}
+
 /// The compliance of every cell's walls, in the order of all cells.
 coupling::WallCompliance CoupledStep::wall_compliance() {
   coupling::WallCompliance walls;
@@ -85,23 +92,27 @@ coupling::WallCompliance CoupledStep::wall_compliance() {
     walls.diagonal.segment(cell_offset_[f], films_[f].grid.n_cells()) = rest_area_[f] / films_[f].wall_stiffness;
   }
   if (cell_of_tissue_.empty()) return walls;
+  const Eigen::VectorXd& lumped = factor_->lumped_compliance();
+  const double mean = lumped.mean();
+  for (size_t k = 0; k < cell_of_tissue_.size(); ++k) {
+    const double own = is_implicit() ? mean : factor_->compliance()(k, k);
+    walls.diagonal[cell_of_tissue_[k]] = std::max(lumped[k], kLeastLumpedShare * own);
+  }
+  if (coupling_ == CouplingMode::kLumped) return walls;
+  if (is_implicit()) {
+    walls.tissue = factor_.get();
+    walls.tissue_cells = &cell_of_tissue_;
+    return walls;
+  }
   const Eigen::MatrixXd& c = factor_->compliance();
-  if (coupling_ == CouplingMode::kLumped) {
-    for (size_t k = 0; k < cell_of_tissue_.size(); ++k) {
-      walls.diagonal[cell_of_tissue_[k]] = std::max(c.row(k).sum(), kLeastLumpedShare * c(k, k));
-    }
-    return walls;
-  }
-  if (static_cast<int>(cell_of_tissue_.size()) == cell_offset_.back()) {
-    walls.full = &c;
-    return walls;
-  }
+  walls.dense = &c;
+  if (static_cast<int>(cell_of_tissue_.size()) == cell_offset_.back()) return walls;
   full_compliance_ = walls.diagonal.asDiagonal();
   for (size_t b = 0; b < cell_of_tissue_.size(); ++b) {
     for (size_t a = 0; a < cell_of_tissue_.size(); ++a)
       full_compliance_(cell_of_tissue_[a], cell_of_tissue_[b]) = c(a, b);
   }
-  walls.full = &full_compliance_;
+  walls.dense = &full_compliance_;
   return walls;
 }
 
@@ -144,7 +155,7 @@ void CoupledStep::enter_injected_cells(const std::vector<Eigen::VectorXd>& injec
   }
 }
 
-void CoupledStep::finish_films(const SimulationState& from, double dt, const coupling::FilmSolveResult& solution,
+void CoupledStep::finish_films(const SimulationState& from, double dt, const coupling::FilmSolution& solution,
                                SimulationState& next) const {
   for (size_t f = 0; f < films_.size(); ++f) {
     const film::FilmGrid& grid = films_[f].grid;
@@ -155,6 +166,7 @@ void CoupledStep::finish_films(const SimulationState& from, double dt, const cou
     projection.compute_velocity(solution.flux[f], film.velocity);
     projection.compute_wall_stress(film.pressure, film.wall_stress);
     film.volume_rate = (film.volume - from.films[f].volume) / dt;
+    film.pressure_rate = (film.pressure - from.films[f].pressure) / dt;
     const double injection_work = film.pressure.dot(projection.input().injected);
     next.injection_work += injection_work;
     next.film_dissipation += injection_work - film.pressure.dot(film.volume - from.films[f].volume);

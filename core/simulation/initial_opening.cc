@@ -17,6 +17,32 @@ constexpr double kOpeningTolerance = 1e-8;
 constexpr double kIntermediateOpeningTolerance = 1e-3;
 /// Opening is quasi-static: inertia over this long a step only keeps S regular [s].
 constexpr double kOpeningStep = 1.0;
+constexpr int kMaxProducts = 300;
+constexpr double kProductTolerance = 1e-9;
+constexpr double kLeastLumpedShare = 1e-3;
+
+/// p with C p = opening, by conjugate gradients preconditioned by diag(C 1).
+bool open_by_products(coupling::CoupledFactor& factor, const Eigen::VectorXd& opening, Eigen::VectorXd& p) {
+  const Eigen::VectorXd& lumped = factor.lumped_compliance();
+  const double least = kLeastLumpedShare * lumped.cwiseAbs().maxCoeff();
+  Eigen::VectorXd residual = opening, product;
+  Eigen::VectorXd conditioned = residual.cwiseQuotient(lumped.cwiseMax(least));
+  Eigen::VectorXd direction = conditioned;
+  p.setZero(opening.size());
+  double descent = residual.dot(conditioned);
+  for (int k = 0; k < kMaxProducts; ++k) {
+    if (residual.norm() <= kProductTolerance * opening.norm()) return true;
+    factor.multiply_compliance(direction, product);
+    const double share = descent / direction.dot(product);
+    p += share * direction;
+    residual -= share * product;
+    conditioned = residual.cwiseQuotient(lumped.cwiseMax(least));
+    const double next = residual.dot(conditioned);
+    direction = conditioned + (next / descent) * direction;
+    descent = next;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -24,12 +50,18 @@ constexpr double kOpeningStep = 1.0;
 bool CoupledStep::open_to(const Eigen::VectorXd& target, double tolerance, SimulationState& state,
                           Eigen::VectorXd& pressure) {
   for (int iteration = 0; iteration < kMaxOpeningIterations; ++iteration) {
-    if (!linearise_tissue(state, kOpeningStep)) return false;
+    if (!linearise_tissue(state, kOpeningStep, coupling::Precision::kDouble)) return false;
     // From the present positions at rest: no inertia and no damping, weight and internal force only.
     const Eigen::VectorXd force = compute_residual_force(state, state.positions, kOpeningStep);
-    const Eigen::VectorXd response = factor_->compute_gap_response(force);
-    pressure = factor_->compliance().llt().solve(target - gaps_->volume() - response);
-    const Eigen::VectorXd dx = factor_->solve_displacement(force, response, pressure);
+    Eigen::VectorXd response, dx;
+    factor_->solve_gap_response(force, response);
+    const Eigen::VectorXd opening = target - gaps_->volume() - response;
+    if (factor_->has_compliance()) {
+      pressure = factor_->compliance().llt().solve(opening);
+    } else if (!open_by_products(*factor_, opening, pressure)) {
+      return false;
+    }
+    factor_->solve_displacement(pressure, dx);
     add_displacement(dx, state.positions);
     if (!state.positions.allFinite()) return false;
     gaps_->evaluate(state.positions);

@@ -93,16 +93,24 @@ absl::Status Simulation::Impl::place_probes() {
 void Simulation::advance_step() {
   Impl& impl = *impl_;
   if (impl.phase != Phase::kRunning) return;
+  double total_time = 0.0;
+  {
+    const PhaseTimer timer(total_time);
+    impl.advance();
+  }
+  impl.report.cost = impl.stepper->cost();
+  impl.report.cost.times.total = total_time;
+}
+
+void Simulation::Impl::advance() {
+  stepper->reset_cost();
   try {
-    StepOutcome outcome = impl.try_with_smaller_steps();
-    if (!outcome.accepted) {
-      impl.fail(outcome.reason);
-      return;
-    }
-    const double dt = outcome.state.time - impl.state.time;
-    impl.accept(std::move(outcome), dt);
+    StepOutcome outcome = try_with_smaller_steps();
+    if (!outcome.accepted) return fail(outcome.reason);
+    const double dt = outcome.state.time - state.time;
+    accept(std::move(outcome), dt);
   } catch (const std::exception& error) {
-    impl.fail(absl::StrCat("ran out of a resource: ", error.what()));
+    fail(absl::StrCat("ran out of a resource: ", error.what()));
   }
 }
 

@@ -36,6 +36,7 @@ struct Simulation::Impl {
   absl::Status set_up();
   absl::Status place_probes();
   absl::Status add_injection(const InjectionSpec& injection, double now);
+  void advance();
   StepOutcome try_with_smaller_steps();
   double first_step_to_try(double smallest) const;
   double next_mark() const;

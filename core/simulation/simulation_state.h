@@ -8,12 +8,15 @@ namespace lipofill::simulation {
 
 /// A film's unknowns, and what it remembers.
 struct FilmState {
-  Eigen::VectorXd volume;       ///< V [m3] (n_cells)
-  Eigen::VectorXd pressure;     ///< p [Pa] (n_cells)
-  Eigen::VectorXd velocity;     ///< U [m2/s] (n_edges)
-  Eigen::VectorXd volume_rate;  ///< dV/dt of the last step [m3/s] (n_cells)
-  Eigen::VectorXd wall_stress;  ///< T of film::FilmStepInput [Pa m] (n_edges); empty: fat is not elastic
-  Eigen::VectorXd is_entered;   ///< 1 where fat has parted the connective tissue, else 0 (n_cells); empty: all open
+  Eigen::VectorXd volume;         ///< V [m3] (n_cells)
+  Eigen::VectorXd pressure;       ///< p [Pa] (n_cells)
+  Eigen::VectorXd velocity;       ///< U [m2/s] (n_edges)
+  Eigen::VectorXd volume_rate;    ///< dV/dt of the last step [m3/s] (n_cells)
+  Eigen::VectorXd pressure_rate;  ///< dp/dt of the last step [Pa/s] (n_cells)
+  Eigen::VectorXd wall_stress;    ///< T of film::FilmStepInput [Pa m] (n_edges); empty: fat is not elastic
+  /// dt J when it was last kept, what solves of many cells are preconditioned with; empty: few cells.
+  Eigen::VectorXd factored_mobility;
+  Eigen::VectorXd is_entered;  ///< 1 where fat has parted the connective tissue, else 0 (n_cells); empty: all open
 };
 
 /// All that changes from step to step and decides the next: what a snapshot holds.
@@ -35,7 +38,9 @@ struct SimulationState {
   Eigen::Matrix3Xd factored_positions;
   Eigen::VectorXd factored_springs;  ///< spring_is_intact then
   double factored_dt = 0.0;          ///< [s]; 0: never factored
+  int factored_in_double = 0;        ///< 1: float32 was not enough, now or before
   int late_iterations = 0;           ///< that an up-to-date factor would have saved, since then
+  int late_pressure_iterations = 0;  ///< that up-to-date mobilities (FilmState::factored_mobility) would have saved
   std::vector<FilmState> films;
 };
 

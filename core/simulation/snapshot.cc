@@ -7,7 +7,7 @@
 namespace lipofill::simulation {
 namespace {
 
-constexpr char kMagic[] = "lipofill-state-3";
+constexpr char kMagic[] = "lipofill-state-4";
 
 /// Visits every number of the mutable state in a fixed order, so that writing, reading and hashing cannot disagree.
 template <typename Visitor>
@@ -25,12 +25,15 @@ void visit_state(SimulationState& state, Visitor& visit) {
   visit.array(state.velocities.data(), state.velocities.size());
   visit.array(state.spring_is_intact.data(), state.spring_is_intact.size());
   visit.number(state.factored_dt);
+  visit.number(state.factored_in_double);
   visit.number(state.late_iterations);
+  visit.number(state.late_pressure_iterations);
   visit.array(state.factored_positions.data(), state.factored_positions.size());
   visit.array(state.factored_springs.data(), state.factored_springs.size());
   for (FilmState& film : state.films) {
     for (Eigen::VectorXd* values :
-         {&film.volume, &film.pressure, &film.velocity, &film.volume_rate, &film.wall_stress, &film.is_entered}) {
+         {&film.volume, &film.pressure, &film.velocity, &film.volume_rate, &film.pressure_rate, &film.wall_stress,
+          &film.factored_mobility, &film.is_entered}) {
       visit.array(values->data(), values->size());
     }
   }
@@ -94,8 +97,6 @@ std::string Simulation::snapshot() const {
   writer.bytes = kMagic;
   SimulationState state = impl_->state;
   visit_state(state, writer);
-  double shift = impl_->stepper->shift();
-  writer.number(shift);
   int phase = static_cast<int>(impl_->phase);
   writer.number(phase);
   std::vector<double> delivered = impl_->schedule.delivered_each();
@@ -112,11 +113,10 @@ absl::Status Simulation::restore(std::string_view snapshot) {
   const size_t magic_size = sizeof kMagic - 1;
   Reader reader{snapshot.substr(std::min(magic_size, snapshot.size()))};
   SimulationState state = impl.state;
-  double shift = 0.0, total = 0.0, initial = 0.0;
+  double total = 0.0, initial = 0.0;
   int phase = 0;
   std::vector<double> delivered = impl.schedule.delivered_each();
   visit_state(state, reader);
-  reader.number(shift);
   reader.number(phase);
   reader.array(delivered.data(), static_cast<Eigen::Index>(delivered.size()));
   reader.number(total);
@@ -125,7 +125,6 @@ absl::Status Simulation::restore(std::string_view snapshot) {
     return absl::DataLossError("not a state of this simulation: its size or mark is another");
   }
   impl.state = std::move(state);
-  impl.stepper->set_shift(shift);
   impl.phase = static_cast<Phase>(phase);
   impl.schedule.restore_delivered(delivered, total);
   impl.initial_volume = initial;

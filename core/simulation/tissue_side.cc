@@ -1,6 +1,7 @@
 // The tissue's side of a coupled step: its forces, its factor and how long that serves, what becomes of it.
 
 #include <algorithm>
+#include <utility>
 
 #include "core/simulation/coupled_step.h"
 #include "core/solid/hex_quality.h"
@@ -10,6 +11,8 @@ namespace {
 
 /// Iterations with a factor of earlier positions, beyond those that a new one would need, that cost as much as it does.
 constexpr int kLateIterationsOfAFactor = 6;
+/// Share of a load that a float32 solve may leave: well below what an iteration with a factor of its own positions may.
+constexpr double kFactorTolerance = 1e-3;
 
 template <typename Matrix>
 bool same(const Matrix& a, const Matrix& b) {
@@ -28,6 +31,7 @@ void CoupledStep::bring_forces_to(const SimulationState& state, double dt) {
   const bool damping_needs_stiffness = tissue_->tissue.damping().beta > 0.0;
   if (damping_needs_stiffness) return assemble(state, dt);
   set_springs(state);
+  const PhaseTimer timer(cost_.times.element);
   tissue_->tissue.compute_force(state.positions);
 }
 
@@ -44,20 +48,39 @@ void CoupledStep::set_springs(const SimulationState& state) {
   forces_springs_ = state.spring_is_intact;
 }
 
-bool CoupledStep::linearise_tissue(const SimulationState& state, double dt) {
-  assemble(state, dt);
-  gaps_->evaluate(state.positions);
+bool CoupledStep::linearise_tissue(const SimulationState& state, double dt, coupling::Precision precision) {
+  {
+    const PhaseTimer timer(cost_.times.element);
+    assemble(state, dt);
+  }
+  {
+    const PhaseTimer timer(cost_.times.coupling);
+    gaps_->evaluate(state.positions);
+  }
+  const PhaseTimer timer(cost_.times.factor);
   factored_positions_ = state.positions;
   factored_springs_ = state.spring_is_intact;
   factored_dt_ = 0.0;
-  if (!factor_->factorise(tissue_->tissue.system_matrix(), gaps_->derivative()).ok()) return false;
+  ++cost_.factorisations;
+  if (!factor_->factorise(tissue_->tissue.system_matrix(), gaps_->derivative(), precision)) return false;
+  const bool is_exact = precision == coupling::Precision::kDouble || measure_factor_error() <= kFactorTolerance;
+  if (!is_exact) return false;
   factored_dt_ = dt;
-  factored_derivative_ = gaps_->derivative();
+  factored_precision_ = precision;
+  film_solver_->pressure_solver().set_walls(wall_compliance());
   return true;
 }
 
+/// In float32 as long as that has been enough.
 bool CoupledStep::factor_here(double dt, SimulationState& state) {
-  if (!linearise_tissue(state, dt)) return false;
+  bool is_factored = false;
+  if (state.factored_in_double == 0) is_factored = linearise_tissue(state, dt, coupling::Precision::kSingle);
+  if (!is_factored) {
+    if (state.factored_in_double == 0) ++cost_.fallbacks;
+    state.factored_in_double = 1;
+    is_factored = linearise_tissue(state, dt, coupling::Precision::kDouble);
+  }
+  if (!is_factored) return false;
   state.factored_positions = factored_positions_;
   state.factored_springs = factored_springs_;
   state.factored_dt = dt;
@@ -66,18 +89,40 @@ bool CoupledStep::factor_here(double dt, SimulationState& state) {
 }
 
 bool CoupledStep::take_up_factor(const SimulationState& state) {
-  const bool at_hand = state.factored_dt == factored_dt_ && same(state.factored_springs, factored_springs_) &&
+  const auto precision = state.factored_in_double == 0 ? coupling::Precision::kSingle : coupling::Precision::kDouble;
+  const bool at_hand = state.factored_dt == factored_dt_ && precision == factored_precision_ &&
+                       same(state.factored_springs, factored_springs_) &&
                        same(state.factored_positions, factored_positions_);
   if (at_hand) return true;
   SimulationState then;
   then.positions = state.factored_positions;
   then.spring_is_intact = state.factored_springs;
-  return linearise_tissue(then, state.factored_dt);
+  if (!linearise_tissue(then, state.factored_dt, precision)) return false;
+  kept_mobility_.clear();
+  return true;
+}
+
+/// Preconditions pressures as the state says, unless they are so at present.
+void CoupledStep::take_up_mobility(const SimulationState& state) {
+  if (!has_lagged_mobility_) return;
+  bool is_at_hand = kept_mobility_.size() == state.films.size();
+  for (size_t f = 0; is_at_hand && f < state.films.size(); ++f) {
+    is_at_hand = same(kept_mobility_[f], state.films[f].factored_mobility);
+  }
+  if (!is_at_hand) keep_mobility(state);
+}
+
+/// Preconditions the pressures of many cells with the mobility that the state holds.
+void CoupledStep::keep_mobility(const SimulationState& state) {
+  const PhaseTimer timer(cost_.times.factor);
+  kept_mobility_.resize(state.films.size());
+  for (size_t f = 0; f < state.films.size(); ++f) kept_mobility_[f] = state.films[f].factored_mobility;
+  film_solver_->pressure_solver().keep_mobility(kept_mobility_);
 }
 
 /// (B(x) - B0)^T p
 Eigen::VectorXd CoupledStep::coupling_force(const Eigen::VectorXd& pressure) const {
-  return gaps_->derivative().transpose() * pressure - factored_derivative_.transpose() * pressure;
+  return gaps_->derivative().transpose() * pressure - factor_->derivative().transpose() * pressure;
 }
 
 /// What is out of balance, f + B^T p, over what is in it.
@@ -117,26 +162,66 @@ void CoupledStep::add_displacement(const Eigen::VectorXd& dx, Eigen::Matrix3Xd& 
 }
 
 /// Forces and gap at the start, and a factor to go with.
-bool CoupledStep::begin_tissue_step(const SimulationState& from, double dt, StepOutcome& outcome) {
-  if (!tissue_) return true;
+bool CoupledStep::begin_tissue_step(const SimulationState& from, double dt, StepOutcome& outcome,
+                                    const coupling::FilmSolution& start) {
+  if (!tissue_) {
+    film_solver_->pressure_solver().set_walls(wall_compliance());
+    return true;
+  }
   const bool is_due = from.factored_dt == 0.0 || from.late_iterations >= kLateIterationsOfAFactor;
   if (is_due) {
-    if (!renew_factor(dt, outcome)) return false;
+    if (!renew_factor(dt, outcome, start)) return false;
   } else if (!take_up_factor(from)) {
     outcome.reason = "the tissue's stiffness is not positive definite";
     return false;
   }
+  if (!is_due) take_up_mobility(from);
+  const bool is_mobility_due =
+      has_lagged_mobility_ &&
+      outcome.state.late_pressure_iterations > film_solver_->pressure_solver().iterations_of_a_preconditioner();
+  if (is_mobility_due) renew_mobility(outcome.state, start);
   bring_forces_to(outcome.state, dt);
+  const PhaseTimer timer(cost_.times.coupling);
   gaps_->evaluate(outcome.state.positions);
   force_ = compute_residual_force(from, outcome.state.positions, dt);
   return true;
 }
 
-bool CoupledStep::renew_factor(double dt, StepOutcome& outcome) {
-  ++outcome.factorisations;
-  if (factor_here(dt, outcome.state)) return true;
-  outcome.reason = "the tissue's stiffness is not positive definite";
-  return false;
+bool CoupledStep::renew_factor(double dt, StepOutcome& outcome, const coupling::FilmSolution& at) {
+  if (!factor_here(dt, outcome.state)) {
+    outcome.reason = "the tissue's stiffness is not positive definite";
+    return false;
+  }
+  if (has_lagged_mobility_) renew_mobility(outcome.state, at);
+  return true;
+}
+
+void CoupledStep::renew_mobility(SimulationState& state, const coupling::FilmSolution& at) {
+  std::vector<Eigen::VectorXd> mobility;
+  {
+    const PhaseTimer timer(cost_.times.film);
+    film_solver_->measure_mobility(at, mobility);
+  }
+  for (size_t f = 0; f < films_.size(); ++f) state.films[f].factored_mobility = std::move(mobility[f]);
+  state.late_pressure_iterations = 0;
+  keep_mobility(state);
+}
+
+/// What a solve under a load that bends and shears all there is, pressure in every film and weight, leaves of the load.
+double CoupledStep::measure_factor_error() {
+  const solid::Tissue& tissue = tissue_->tissue;
+  Eigen::VectorXd load = gaps_->derivative().transpose() * Eigen::VectorXd::Ones(gaps_->volume().size());
+  const double pressure_size = load.norm();
+  Eigen::VectorXd weight = Eigen::VectorXd::Zero(load.size());
+  for (size_t k = 0; k < tissue.dof_of_component().size(); ++k) {
+    if (tissue.dof_of_component()[k] >= 0) weight[tissue.dof_of_component()[k]] = tissue.mass()[k / 3];
+  }
+  if (weight.norm() > 0.0) load += (pressure_size > 0.0 ? pressure_size : 1.0) / weight.norm() * weight;
+  Eigen::VectorXd response, moved;
+  factor_->solve_gap_response(load, response);
+  factor_->solve_displacement(Eigen::VectorXd::Zero(response.size()), moved);
+  const Eigen::VectorXd carried = tissue.system_matrix().selfadjointView<Eigen::Lower>() * moved;
+  return (carried - load).norm() / load.norm();
 }
 
 /// Whether the factor at hand is of other positions than those of the iteration.
@@ -144,16 +229,27 @@ bool CoupledStep::is_late(const StepOutcome& outcome) const {
   return !same(factored_positions_, outcome.state.positions);
 }
 
-bool CoupledStep::move_tissue(const SimulationState& from, double dt, const Eigen::VectorXd& dx, StepOutcome& outcome) {
+bool CoupledStep::move_tissue(const SimulationState& from, double dt, const Eigen::VectorXd& pressure,
+                              StepOutcome& outcome) {
   Eigen::Matrix3Xd& x = outcome.state.positions;
+  Eigen::VectorXd dx;
+  {
+    const PhaseTimer timer(cost_.times.solve);
+    factor_->solve_displacement(pressure, dx);
+    ++cost_.tissue_solves;
+  }
   add_displacement(dx, x);
   if (!x.allFinite()) {
     outcome.reason = "positions are not finite";
     return false;
   }
   bring_forces_to(outcome.state, dt);
-  gaps_->evaluate(x);
-  force_ = compute_residual_force(from, x, dt);
+  {
+    const PhaseTimer timer(cost_.times.coupling);
+    gaps_->evaluate(x);
+    force_ = compute_residual_force(from, x, dt);
+  }
+  const PhaseTimer timer(cost_.times.element);
   outcome.min_scaled_jacobian = solid::compute_min_scaled_jacobian(tissue_->tissue.mesh(), x);
   return true;
 }

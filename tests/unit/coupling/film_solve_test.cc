@@ -23,7 +23,7 @@ struct FlatFilm {
     metric = film::compute_film_metric(grid, vertices);
   }
 
-  FilmSolveResult begin(double thickness, int source, double injected, double dt) {
+  FilmSolution begin(double thickness, int source, double injected, double dt) {
     const Eigen::VectorXd volume = thickness * metric.area;
     Eigen::VectorXd into = Eigen::VectorXd::Zero(grid.n_cells());
     into[source] = injected;
@@ -33,14 +33,22 @@ struct FlatFilm {
   }
 };
 
+FilmSolution solve(FlatFilm& film, const WallCompliance& walls, const FilmSolution& start) {
+  FilmSolver solver({&film.projection});
+  solver.pressure_solver().set_walls(walls);
+  FilmSolution solution = start;
+  solver.solve(start.volume, {}, {}, solution);
+  return solution;
+}
+
 TEST(FilmSolve, KeepsVolumeAndPositivityAtAnyStep) {
   for (const double dt : {1e-3, 1e-2, 1.0, 10.0}) {
     FlatFilm film(9);
     const double injected = 2e-7;
-    const FilmSolveResult start = film.begin(0.05e-3, 40, injected, dt);
+    const FilmSolution start = film.begin(0.05e-3, 40, injected, dt);
     WallCompliance walls;
     walls.diagonal = film.metric.area / 1e6;
-    const FilmSolveResult result = solve_films({&film.projection}, walls, start.volume, {}, start);
+    const FilmSolution result = solve(film, walls, start);
     EXPECT_TRUE(result.converged) << "dt " << dt << " change " << result.change;
     EXPECT_GT(result.volume.minCoeff(), 0.0);
     EXPECT_NEAR(result.volume.sum(), start.volume.sum() + injected, 1e-14 * result.volume.sum());
@@ -52,10 +60,10 @@ TEST(FilmSolve, FullComplianceSatisfiesTheCoupledEquation) {
   FlatFilm film(5);
   Eigen::MatrixXd c = Eigen::MatrixXd::Random(25, 25);
   c = 1e-12 * (c * c.transpose() + 25.0 * Eigen::MatrixXd::Identity(25, 25));
-  const FilmSolveResult start = film.begin(0.2e-3, 12, 1e-8, 0.01);
+  const FilmSolution start = film.begin(0.2e-3, 12, 1e-8, 0.01);
   WallCompliance walls;
-  walls.full = &c;
-  const FilmSolveResult result = solve_films({&film.projection}, walls, start.volume, {}, start);
+  walls.dense = &c;
+  const FilmSolution result = solve(film, walls, start);
   ASSERT_TRUE(result.converged);
   EXPECT_LT((start.volume + c * result.pressure - result.volume).cwiseAbs().maxCoeff(),
             1e-12 * result.volume.maxCoeff());
@@ -63,10 +71,10 @@ TEST(FilmSolve, FullComplianceSatisfiesTheCoupledEquation) {
 
 TEST(FilmSolve, TakingMoreThanThereIsDoesNotConverge) {
   FlatFilm film(5);
-  const FilmSolveResult start = film.begin(0.05e-3, 12, -1e-7, 0.01);
+  const FilmSolution start = film.begin(0.05e-3, 12, -1e-7, 0.01);
   WallCompliance walls;
   walls.diagonal = film.metric.area / 1e6;
-  EXPECT_FALSE(solve_films({&film.projection}, walls, start.volume, {}, start).converged);
+  EXPECT_FALSE(solve(film, walls, start).converged);
 }
 
 }  // namespace

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <memory>
+#include <vector>
+
+#include "core/coupling/factor_analysis.h"
+
+namespace lipofill::coupling {
+
+/// L11, L21 and C of FactorAnalysis in float32 or float64: left-looking, supernode by supernode, on BLAS. The matrix is
+/// scaled to a unit diagonal, so that units and contrasts of stiffness cost no digits. C is a sum of squares, without
+/// cancellation.
+///
+/// Sums in a fixed order on the calling thread. Checked by tests/unit/coupling/supernodal_factor_test.cc against dense
+/// algebra and CHOLMOD.
+template <typename Scalar>
+class SupernodalFactor {
+ public:
+  using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+
+  explicit SupernodalFactor(std::shared_ptr<const FactorAnalysis> analysis);
+
+  /// False: a pivot is not positive in this precision; the factor is then not usable.
+  bool factorise(const Eigen::SparseMatrix<double>& s, const Eigen::SparseMatrix<double>& b);
+
+  /// C (n_cells, n_cells), symmetric.
+  void compute_compliance(Eigen::MatrixXd& compliance);
+
+  /// Half a solve: keeps y = L11^-1 r and returns B S^-1 r = L21 y.
+  void solve_forward(const Eigen::VectorXd& r, Eigen::VectorXd& gap_response);
+  /// The other half: x = S^-1 (r + B^T p) = L11^-T (y + L21^T p), with the y that solve_forward kept.
+  void solve_backward(const Eigen::VectorXd& pressure, Eigen::VectorXd& x);
+
+ private:
+  using Supernode = FactorAnalysis::Supernode;
+  bool fill(const Eigen::SparseMatrix<double>& s, const Eigen::SparseMatrix<double>& b);
+  void add_square(const Supernode& node);
+  void gather_pressure_rows(const Supernode& node, int first, int count, int at);
+  void add_gathered_squares(int& n_gathered);
+  void subtract_update(const Supernode& target, const FactorAnalysis::Update& update);
+  Scalar* values_of(const Supernode& node) { return values_.data() + node.values; }
+
+  std::shared_ptr<const FactorAnalysis> analysis_;
+  std::vector<Scalar> values_;
+  std::vector<Scalar> buffer_;  ///< of one update, or of one supernode's rows
+  std::vector<Scalar> square_;  ///< of one supernode, of its pressure rows
+  Matrix gathered_;             ///< pressure rows of several supernodes (n_cells, kGatheredColumns)
+  Matrix sum_;                  ///< C, scaled, lower triangle
+  std::vector<int> position_;   ///< of each row of L in the supernode under way
+  std::vector<int> relative_;   ///< positions of an update's rows
+  Eigen::VectorXd scale_;       ///< of each degree of freedom
+  double pressure_scale_ = 1.0;
+  Vector forward_;  ///< y, and below it L21 y
+  Vector solution_;
+};
+
+extern template class SupernodalFactor<float>;
+extern template class SupernodalFactor<double>;
+
+}  // namespace lipofill::coupling

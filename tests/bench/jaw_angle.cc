@@ -30,6 +30,14 @@ absl::StatusOr<geometry::SurfaceMesh> read_face(const client::PlanFile& plan) {
   return geometry::read_surface(bytes.str(), geometry::SurfaceFormat::kObj, 1e-3);
 }
 
+/// As `lipofill run --fast` does.
+void aim_at_settled_shape(v1::TimeControl& time) {
+  time.set_goal(v1::TimeControl::SETTLED_SHAPE);
+  time.clear_max_step_ms();
+  time.clear_max_injection_step_ms();
+  time.clear_error_tolerance_mm();
+}
+
 absl::Status refine(int scale, simulation::FaceModelSpec& model, simulation::FilmSpec& film) {
   if (scale == kTinyScale) {
     model.n_xi /= 2;
@@ -50,7 +58,7 @@ absl::Status refine(int scale, simulation::FaceModelSpec& model, simulation::Fil
 }  // namespace
 
 absl::StatusOr<SampleFace> load_sample_face(int scale) {
-  const auto plan = load_sample_plan();
+  auto plan = load_sample_plan();
   if (!plan.ok()) return plan.status();
   auto face = read_face(*plan);
   if (!face.ok()) return face.status();
@@ -58,9 +66,13 @@ absl::StatusOr<SampleFace> load_sample_face(int scale) {
   if (!model.ok()) return model.status();
   auto spec = server::to_simulation_spec(plan->plan.simulation());
   if (!spec.ok()) return spec.status();
+  aim_at_settled_shape(*plan->plan.mutable_simulation()->mutable_time());
+  auto settled_shape = server::to_simulation_spec(plan->plan.simulation());
+  if (!settled_shape.ok()) return settled_shape.status();
   std::get<geometry::ScanRegionSpec>(model->region).scan = *std::move(face);
   if (const absl::Status status = refine(scale, *model, spec->films[0]); !status.ok()) return status;
-  return SampleFace{*std::move(model), *std::move(spec)};
+  settled_shape->films = spec->films;
+  return SampleFace{*std::move(model), *std::move(spec), *std::move(settled_shape)};
 }
 
 absl::StatusOr<JawAngle> make_jaw_angle(int scale) {
@@ -68,7 +80,7 @@ absl::StatusOr<JawAngle> make_jaw_angle(int scale) {
   if (!face.ok()) return face.status();
   auto model = simulation::build_face_model(face->model, nullptr);
   if (!model.ok()) return model.status();
-  return JawAngle{scale, *std::move(model), std::move(face->simulation)};
+  return JawAngle{scale, *std::move(model), std::move(face->simulation), std::move(face->settled_shape)};
 }
 
 }  // namespace lipofill::bench

@@ -15,6 +15,7 @@ inline constexpr double kTinyShare = 0.25;
 struct SampleFace {
   simulation::FaceModelSpec model;
   simulation::SimulationSpec simulation;
+  simulation::SimulationSpec settled_shape;  ///< the same with that goal: few long steps
 };
 
 /// From client/examples/plans/jaw_angle.json, refined in the plane of the face: `scale` 1, 4, 16 or 64 has as many
@@ -27,6 +28,7 @@ struct JawAngle {
   int scale = 1;
   std::shared_ptr<const simulation::FaceModel> model;
   simulation::SimulationSpec spec;
+  simulation::SimulationSpec settled_shape;
 };
 absl::StatusOr<JawAngle> make_jaw_angle(int scale);
 

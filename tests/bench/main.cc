@@ -21,9 +21,10 @@ namespace {
 constexpr int kLargestBeside = 16;
 
 struct Options {
-  std::vector<int> scales = {1, 4};
+  std::vector<int> scales = {1, 4, 16};
   int rounds = 3;
-  int steps_a_round = 10;
+  int steps_a_round = 30;
+  int only_plan = 0;
   bool steps_only = false;
   bool is_smoke = false;
   std::string out = "bench.json";
@@ -55,12 +56,11 @@ absl::Status set_up(const Options& options, Findings& findings) {
   return absl::OkStatus();
 }
 
-absl::Status run_settled(Findings& findings) {
-  const JawAngle& jaw = findings.scales.front()->jaw();
-  auto run = run_to_settled(jaw, jaw.spec);
+absl::Status run_settled(const JawAngle& jaw, const simulation::SimulationSpec& spec, std::vector<SettledRun>& runs) {
+  auto run = run_to_settled(jaw, spec);
   if (!run.ok()) return run.status();
-  findings.as_planned.push_back(*std::move(run));
-  if (findings.as_planned.back().state_hash == findings.as_planned.front().state_hash) return absl::OkStatus();
+  runs.push_back(*std::move(run));
+  if (runs.back().state_hash == runs.front().state_hash) return absl::OkStatus();
   return absl::InternalError("the same plan came to two different states");
 }
 
@@ -68,7 +68,10 @@ absl::Status run_rounds(const Options& options, Findings& findings) {
   constexpr int kRepeatsOfSmallest = 3;
   for (; findings.rounds < options.rounds; ++findings.rounds) {
     say("round " + std::to_string(findings.rounds + 1) + " of " + std::to_string(options.rounds));
-    if (const absl::Status status = run_settled(findings); !status.ok()) return status;
+    const JawAngle& jaw = findings.scales.front()->jaw();
+    absl::Status settled = run_settled(jaw, jaw.spec, findings.as_planned);
+    settled.Update(run_settled(jaw, jaw.settled_shape, findings.settled_shape));
+    if (!settled.ok()) return settled;
     for (const auto& scale : findings.scales) {
       const int repeats = scale->scale() <= 1 ? kRepeatsOfSmallest : 1;
       if (const absl::Status status = scale->run_round(options.steps_a_round, repeats); !status.ok()) return status;
@@ -90,7 +93,17 @@ absl::Status run_beyond(const Options& options, Findings& findings) {
   return absl::OkStatus();
 }
 
+absl::Status run_only_plan(int times) {
+  const auto jaw = make_jaw_angle(1);
+  if (!jaw.ok()) return jaw.status();
+  std::vector<SettledRun> runs;
+  absl::Status status;
+  for (int k = 0; k < times && status.ok(); ++k) status = run_settled(*jaw, jaw->spec, runs);
+  return status;
+}
+
 absl::Status run(const Options& options) {
+  if (options.only_plan > 0) return run_only_plan(options.only_plan);
   Findings findings;
   for (auto* stage : {+[](const Options&o, Findings&f) { return measure_memory(o, f); },
                       +[](const Options&o, Findings&f) { return set_up(o, f); },
@@ -113,6 +126,8 @@ int main_of(int argc, char** argv) {
   app.add_option("--rounds", options.rounds, "how often everything is done")->check(CLI::Range(1, 100));
   app.add_option("--steps", options.steps_a_round, "steps a round at each scale")->check(CLI::Range(1, 100));
   app.add_flag("--steps-only", options.steps_only, "leave out the other ways to solve a step");
+  app.add_option("--only-plan", options.only_plan, "run the plan so often and nothing else, for a profiler")
+      ->check(CLI::Range(1, 1000));
   app.add_flag("--smoke", options.is_smoke, "one round on a quarter of the plan's size: does it all work");
   app.add_option("--out", options.out, "where the JSON goes");
   CLI11_PARSE(app, argc, argv);

@@ -65,15 +65,17 @@ double Samples::quantile_wall_ms(double q) const {
 }
 
 nlohmann::ordered_json Samples::to_json() const {
-  return {{"samples", spans_.size()},
-          {"median_ms", median_cpu_ms()},
-          {"mean_ms", mean_cpu_ms()},
-          {"p99_ms", quantile_cpu_ms(0.99)},
-          {"worst_ms", quantile_cpu_ms(1.0)},
-          {"wall_median_ms", quantile_wall_ms(0.5)},
-          {"wall_mean_ms", mean_wall_ms()},
-          {"wall_p99_ms", quantile_wall_ms(0.99)},
-          {"wall_worst_ms", quantile_wall_ms(1.0)}};
+  nlohmann::ordered_json json = {{"samples", spans_.size()},
+                                 {"median_ms", median_cpu_ms()},
+                                 {"mean_ms", mean_cpu_ms()},
+                                 {"p99_ms", quantile_cpu_ms(0.99)},
+                                 {"worst_ms", quantile_cpu_ms(1.0)}};
+  if (mean_wall_ms() == 0.0) return json;
+  json["wall_median_ms"] = quantile_wall_ms(0.5);
+  json["wall_mean_ms"] = mean_wall_ms();
+  json["wall_p99_ms"] = quantile_wall_ms(0.99);
+  json["wall_worst_ms"] = quantile_wall_ms(1.0);
+  return json;
 }
 
 void PhaseSamples::add(const std::string& phase, const Span& span) {

@@ -40,7 +40,8 @@ class Samples {
   double mean_wall_ms() const;
   double quantile_wall_ms(double q) const;
 
-  /// {"samples", "median_ms", "mean_ms", "p99_ms", "worst_ms", and of wall time "wall_median_ms", ...}
+  /// {"samples", "median_ms", "mean_ms", "p99_ms", "worst_ms", and where wall time was taken too
+  /// "wall_median_ms", ...}
   nlohmann::ordered_json to_json() const;
 
  private:

@@ -1,10 +1,11 @@
 // Ways to the coupled step over MUMPS' multifrontal factors, in double and single precision.
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <utility>
 
 #include "tests/bench/block_matrix.h"
 #include "tests/bench/cholmod_factor.h"
+#include "tests/bench/dense_cholesky.h"
 #include "tests/bench/mumps_factor.h"
 #include "tests/bench/phase_clock.h"
 #include "tests/bench/route.h"
@@ -68,7 +69,7 @@ class SchurMumps : public Route {
     clock.done("factor");
     const VectorXd reduced = factor_.condense(right_side_of(step));
     clock.done("solve");
-    const VectorXd pressures = Eigen::LLT<Eigen::MatrixXd>(-factor_.schur_complement()).solve(-reduced);
+    const VectorXd pressures = DenseCholesky(-factor_.schur_complement()).solve(-reduced);
     clock.done("pressure");
     result.answer = answer_of(step, factor_.expand(pressures));
     clock.done("displacement");

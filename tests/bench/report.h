@@ -17,6 +17,7 @@ struct Findings {
   int rounds = 0;
   std::vector<std::unique_ptr<ScaleBench>> scales;  ///< ascending; the first is what the bounds are for
   std::vector<SettledRun> as_planned;               ///< one a round
+  std::vector<SettledRun> settled_shape;            ///< with that goal, one a round
   SessionMemory memory;
   nlohmann::ordered_json beyond =
       nlohmann::ordered_json::array();  ///< of scales too large to be held beside the others

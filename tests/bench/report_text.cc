@@ -35,7 +35,17 @@ void print_steps(const Json& scale, std::ostream& out) {
       << "  " << std::left << std::setw(kNameWidth) << "a step [ms]" << std::right;
   for (const char* title : {"median", "mean", "p99", "worst"}) out << std::setw(kFigureWidth) << title;
   out << "\n";
-  for (const auto& [phase, samples] : scale.at("steps").at("phases").items()) put_samples(out, phase, samples);
+  const Json& steps = scale.at("steps");
+  put_samples(out, "step", steps.at("phases").at("step"));
+  for (const auto& [part, samples] : steps.at("parts").at("times").items()) put_samples(out, "  " + part, samples);
+  for (const auto& [phase, samples] : steps.at("phases").items()) {
+    if (phase != "step") put_samples(out, phase, samples);
+  }
+  out << "  a step has";
+  for (const auto& [what, count] : steps.at("parts").at("per_step").items()) {
+    out << "  " << what << " " << count.get<double>();
+  }
+  out << "\n";
 }
 
 void print_routes(const Json& scale, std::ostream& out) {

@@ -42,6 +42,7 @@ struct RouteKind {
 std::vector<RouteKind> all_routes();
 
 /// The parts of all_routes().
+std::vector<RouteKind> own_routes();
 std::vector<RouteKind> cholmod_routes();
 std::vector<RouteKind> eigen_routes();
 std::vector<RouteKind> mumps_routes();

@@ -45,31 +45,31 @@ absl::Status WholeSteps::advance(int n_steps) {
     simulation_->advance_step();
     samples_.add("step", watch.lap());
     if (const absl::Status status = check_running(*simulation_); !status.ok()) return status;
-    newton_iterations_ += simulation_->report().newton_iterations;
-    film_iterations_ += simulation_->report().film_iterations;
-    take_frame();
+    costs_.add(simulation_->report().cost);
+    take_frame({"skin", "film/" + simulation_->spec().films[0].name}, "");
+    take_frame({}, "_of_all_meshes");
   }
   return absl::OkStatus();
 }
 
-void WholeSteps::take_frame() {
+/// A frame of some meshes, all when empty, and its encoding, for one viewer or for fifty: they share it.
+void WholeSteps::take_frame(const std::vector<std::string>& meshes, const std::string& suffix) {
   Stopwatch watch;
   server::Frame frame;
-  frame.fields = simulation_->frame({});
-  samples_.add("frame", watch.lap());
-  std::vector<std::string> meshes;
-  for (const simulation::FrameField& field : frame.fields) meshes.push_back(field.mesh);
-  const server::EncodedMessages encoded = server::encode_frame(server::to_whole_frame(frame, meshes));
-  samples_.add("encoding", watch.lap());
-  frame_bytes_ = 0;
-  for (const std::string& message : encoded.messages) frame_bytes_ += message.size();
+  frame.fields = simulation_->frame(meshes);
+  samples_.add("frame" + suffix, watch.lap());
+  std::vector<std::string> names;
+  for (const simulation::FrameField& field : frame.fields) names.push_back(field.mesh);
+  const server::EncodedMessages encoded = server::encode_frame(server::to_whole_frame(frame, names));
+  samples_.add("encoding" + suffix, watch.lap());
+  size_t& bytes = frame_bytes_["frame" + suffix];
+  bytes = 0;
+  for (const std::string& message : encoded.messages) bytes += message.size();
 }
 
 nlohmann::ordered_json WholeSteps::to_json() const {
-  const auto n = static_cast<double>(samples_.find("step")->size());
   return {{"phases", samples_.to_json()},
-          {"newton_iterations_per_step", newton_iterations_ / n},
-          {"film_iterations_per_step", film_iterations_ / n},
+          {"parts", costs_.to_json()},
           {"frame_bytes", frame_bytes_},
           {"from_simulated_s", kWarmUpEnd},
           {"state_hash", simulation_->state_hash()}};
@@ -86,7 +86,10 @@ absl::StatusOr<SettledRun> run_to_settled(const JawAngle& jaw, const simulation:
     simulation.advance_step();
     const Span step = watch.lap();
     run.stepping = run.stepping + step;
-    if (simulation.report().step_size <= spec.step) run.injecting.add(step);
+    if (simulation.report().step_size <= spec.step) {
+      run.injecting.add(step);
+      run.costs.add(simulation.report().cost);
+    }
     ++run.steps;
   }
   if (simulation.phase() != Phase::kSettled) {

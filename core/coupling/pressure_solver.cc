@@ -17,9 +17,9 @@ PressureSolver::PressureSolver(std::vector<film::FilmProjection*> films)
   for (const film::FilmProjection* film : films_) n_ += film->grid().n_cells();
 }
 
-void PressureSolver::set_walls(WallCompliance walls) {
+void PressureSolver::set_walls(const WallCompliance& walls) {
   const bool is_first = walls_.diagonal.size() == 0 && walls_.dense == nullptr;
-  walls_ = std::move(walls);
+  walls_ = walls;
   if (is_first) find_rigid_components();
 }
 

@@ -29,7 +29,7 @@ class PressureSolver {
   explicit PressureSolver(std::vector<film::FilmProjection*> films);
 
   /// The walls of the solves to come; what it points to must outlive them.
-  void set_walls(WallCompliance walls);
+  void set_walls(const WallCompliance& walls);
   /// C p.
   void multiply_walls(const Eigen::VectorXd& p, Eigen::VectorXd& product) const;
 

@@ -27,38 +27,39 @@ constexpr double kGapTolerance = 2e-5;
 
 }  // namespace
 
-Eigen::VectorXd CoupledStep::gather_tissue_part(const Eigen::VectorXd& all_cells) const {
-  Eigen::VectorXd part(cell_of_tissue_.size());
+void CoupledStep::gather_tissue_part(const Eigen::VectorXd& all_cells, Eigen::VectorXd& part) const {
+  part.resize(static_cast<Eigen::Index>(cell_of_tissue_.size()));
   for (size_t k = 0; k < cell_of_tissue_.size(); ++k) part[k] = all_cells[cell_of_tissue_[k]];
-  return part;
 }
 
-double CoupledStep::gap_error(const Eigen::VectorXd& gap, const Eigen::VectorXd& volume) const {
-  const double total = std::max(volume.sum(), std::numeric_limits<double>::min());
-  if (coupling_ == CouplingMode::kLumped) return std::abs((gap - volume).sum()) / total;
-  return (gap - volume).cwiseAbs().sum() / total;
+/// Of the gap against film and void together.
+double CoupledStep::gap_error(const Eigen::VectorXd& gap, const coupling::FilmSolution& solution) const {
+  const auto held = solution.volume + solution.void_volume;
+  const double total = std::max(held.sum(), std::numeric_limits<double>::min());
+  if (coupling_ == CouplingMode::kLumped) return std::abs((gap - held).sum()) / total;
+  return (gap - held).cwiseAbs().sum() / total;
 }
 
-Eigen::VectorXd CoupledStep::gather(const SimulationState& state, Eigen::VectorXd FilmState::*values) const {
-  Eigen::VectorXd all(cell_offset_.back());
+void CoupledStep::gather(const SimulationState& state, Eigen::VectorXd FilmState::*values, Eigen::VectorXd& all) const {
+  all.resize(cell_offset_.back());
   for (size_t f = 0; f < films_.size(); ++f) {
     all.segment(cell_offset_[f], films_[f].grid.n_cells()) = state.films[f].*values;
   }
-  return all;
 }
 
-StepOutcome CoupledStep::try_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected,
-                                  double dt) {
-  StepOutcome outcome;
+void CoupledStep::try_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt,
+                           StepOutcome& outcome) {
+  outcome.accepted = false;
+  outcome.reason.clear();
   outcome.state = state;
   enter_injected_cells(injected, outcome.state);
   {
     const PhaseTimer timer(cost_.times.film);
     begin_film_step(outcome.state, injected, dt);
   }
-  coupling::FilmSolution solution;
+  coupling::FilmSolution& solution = work_.solution;
   predict(state, dt, outcome.state, solution);
-  if (!solve_tissue_and_films(state, dt, outcome, solution)) return outcome;
+  if (!solve_tissue_and_films(state, dt, outcome, solution)) return;
   outcome.void_volume = solution.void_volume;
   finish_tissue(state, dt, outcome);
   const PhaseTimer timer(cost_.times.film);
@@ -67,31 +68,36 @@ StepOutcome CoupledStep::try_step(const SimulationState& state, const std::vecto
   outcome.state.step = state.step + 1;
   outcome.state.last_step = dt;
   outcome.accepted = true;
-  return outcome;
 }
 
 /// Carries the last step on: where the iteration starts.
 void CoupledStep::predict(const SimulationState& from, double dt, SimulationState& next,
                           coupling::FilmSolution& solution) {
-  solution.pressure = gather(from, &FilmState::pressure) + dt * gather(from, &FilmState::pressure_rate);
-  solution.volume = gather(from, &FilmState::volume) + dt * gather(from, &FilmState::volume_rate);
-  solution.volume = solution.volume.cwiseMax(0.0);
-  solution.flux.clear();
-  for (const FilmState& film : from.films) solution.flux.push_back(film.velocity);
+  gather(from, &FilmState::pressure, solution.pressure);
+  gather(from, &FilmState::pressure_rate, work_.rate);
+  solution.pressure += dt * work_.rate;
+  gather(from, &FilmState::volume, solution.volume);
+  gather(from, &FilmState::volume_rate, work_.rate);
+  solution.volume = (solution.volume + dt * work_.rate).cwiseMax(0.0);
+  solution.flux.resize(from.films.size());
+  for (size_t f = 0; f < from.films.size(); ++f) {
+    const Eigen::VectorXd& velocity = from.films[f].velocity;
+    solution.flux[f].setZero(velocity.size() + static_cast<Eigen::Index>(films_[f].grid.leaky_walls.size()));
+    solution.flux[f].head(velocity.size()) = velocity;
+  }
   if (!tissue_ || from.velocities.isZero(0.0)) return;
   next.positions = from.positions + dt * from.velocities;
   bring_forces_to(next, dt);
   if (tissue_->tissue.min_volume_ratio() <= 0.0) next.positions = from.positions;
 }
 
-bool CoupledStep::solve_films(const Eigen::VectorXd& gap_without_pressure, const Eigen::VectorXd& lowest,
-                              StepOutcome& outcome, coupling::FilmSolution& solution) {
+bool CoupledStep::solve_films(StepOutcome& outcome, coupling::FilmSolution& solution) {
   const PhaseTimer timer(cost_.times.film);
   const coupling::PressureSolver& pressures = film_solver_->pressure_solver();
   const long solves = pressures.iterative_solves();
   const long iterations = pressures.iterations();
   const long fallbacks = pressures.fallbacks();
-  film_solver_->solve(gap_without_pressure, lowest, film_tolerance(), solution);
+  film_solver_->solve(work_.gap_without_pressure, work_.lowest, film_tolerance(), solution);
   const auto spent = static_cast<int>(pressures.iterations() - iterations);
   const auto prompt = kPromptPressureIterations * static_cast<int>(pressures.iterative_solves() - solves);
   cost_.iterative_iterations += spent;
@@ -105,27 +111,33 @@ bool CoupledStep::solve_films(const Eigen::VectorXd& gap_without_pressure, const
   return false;
 }
 
+/// Rest, walls of their own apart, and on tissue where the force there is alone would bring the gap.
+void CoupledStep::set_gap_without_pressure(const coupling::FilmSolution& solution) {
+  work_.gap_without_pressure = rest_volume_;
+  if (!tissue_) return;
+  gather_tissue_part(solution.pressure, work_.pressure);
+  work_.force = force_;
+  add_coupling_force(work_.pressure, work_.force);
+  const PhaseTimer timer(cost_.times.solve);
+  factor_->solve_gap_response(work_.force, work_.response);
+  for (size_t k = 0; k < cell_of_tissue_.size(); ++k) {
+    work_.gap_without_pressure[cell_of_tissue_[k]] += gaps_->volume()[k] + work_.response[k];
+  }
+}
+
 bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt, StepOutcome& outcome,
                                          coupling::FilmSolution& solution) {
-  const Eigen::VectorXd lowest = lowest_pressure(outcome.state);
+  set_lowest_pressure(outcome.state, work_.lowest);
   outcome.film_iterations = 0;
   if (!begin_tissue_step(from, dt, outcome, solution)) return false;
   double last_error = std::numeric_limits<double>::infinity();
   for (outcome.newton_iterations = 1; outcome.newton_iterations <= kMaxNewtonIterations; ++outcome.newton_iterations) {
     ++cost_.newton_iterations;
     const double force_tolerance = tissue_ && is_late(outcome) ? kForceTolerance : kPromptForceTolerance;
-    Eigen::VectorXd gap_without_pressure = rest_volume_;
-    if (tissue_) {
-      const Eigen::VectorXd force = force_ + coupling_force(gather_tissue_part(solution.pressure));
-      const PhaseTimer timer(cost_.times.solve);
-      Eigen::VectorXd response;
-      factor_->solve_gap_response(force, response);
-      for (size_t k = 0; k < cell_of_tissue_.size(); ++k) {
-        gap_without_pressure[cell_of_tissue_[k]] += gaps_->volume()[k] + response[k];
-      }
-    }
-    if (!solve_films(gap_without_pressure, lowest, outcome, solution)) return false;
-    if (tissue_ && !move_tissue(from, dt, gather_tissue_part(solution.pressure), outcome)) return false;
+    set_gap_without_pressure(solution);
+    if (!solve_films(outcome, solution)) return false;
+    gather_tissue_part(solution.pressure, work_.pressure);
+    if (tissue_ && !move_tissue(from, dt, work_.pressure, outcome)) return false;
     const double error = measure_error(solution, force_tolerance, outcome);
     // The barrier against elements turned inside out (solid/inversion_barrier.h) drives folded ones back.
     if (error <= 1.0 && outcome.min_scaled_jacobian > 0.0) {
@@ -150,30 +162,32 @@ bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt,
 double CoupledStep::measure_error(const coupling::FilmSolution& solution, double force_tolerance,
                                   StepOutcome& outcome) {
   const PhaseTimer timer(cost_.times.coupling);
-  outcome.gap = gap_of_walls(solution.pressure);
-  if (!tissue_) return gap_error(outcome.gap, solution.volume + solution.void_volume) / kGapTolerance;
+  set_gap_of_walls(solution.pressure, outcome.gap);
+  if (!tissue_) return gap_error(outcome.gap, solution) / kGapTolerance;
   for (size_t k = 0; k < cell_of_tissue_.size(); ++k) outcome.gap[cell_of_tissue_[k]] += gaps_->volume()[k];
-  const double of_gap = gap_error(outcome.gap, solution.volume + solution.void_volume) / kGapTolerance;
-  return std::max(of_gap, force_error(force_, gather_tissue_part(solution.pressure)) / force_tolerance);
+  const double of_gap = gap_error(outcome.gap, solution) / kGapTolerance;
+  return std::max(of_gap, force_error(force_, work_.pressure) / force_tolerance);
 }
 
-Eigen::VectorXd CoupledStep::compute_gap(const SimulationState& state) {
-  Eigen::VectorXd gap = gap_of_walls(gather(state, &FilmState::pressure));
-  if (!tissue_) return gap;
+void CoupledStep::compute_gap(const SimulationState& state, Eigen::VectorXd& gap) {
+  gather(state, &FilmState::pressure, work_.rate);
+  set_gap_of_walls(work_.rate, gap);
+  if (!tissue_) return;
   gaps_->evaluate(state.positions);
   for (size_t k = 0; k < cell_of_tissue_.size(); ++k) gap[cell_of_tissue_[k]] += gaps_->volume()[k];
-  return gap;
 }
 
 StepOutcome CoupledStep::describe(const SimulationState& state) {
   StepOutcome outcome;
   outcome.state = state;
-  outcome.gap = compute_gap(state);
-  const Eigen::VectorXd pressure = gather(state, &FilmState::pressure);
-  const Eigen::VectorXd lowest = lowest_pressure(state);
+  compute_gap(state, outcome.gap);
+  Eigen::VectorXd pressure, volume, lowest;
+  gather(state, &FilmState::pressure, pressure);
+  gather(state, &FilmState::volume, volume);
+  set_lowest_pressure(state, lowest);
   outcome.void_volume = Eigen::VectorXd::Zero(outcome.gap.size());
   if (lowest.size() > 0) {
-    const Eigen::VectorXd excess = (outcome.gap - gather(state, &FilmState::volume)).cwiseMax(0.0);
+    const Eigen::VectorXd excess = (outcome.gap - volume).cwiseMax(0.0);
     outcome.void_volume = (pressure.array() <= lowest.array()).select(excess, 0.0);
   }
   if (!tissue_) return outcome;

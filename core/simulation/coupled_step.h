@@ -9,6 +9,7 @@
 #include "core/coupling/coupled_factor.h"
 #include "core/coupling/film_solve.h"
 #include "core/coupling/gap_system.h"
+#include "core/film/advection.h"
 #include "core/film/film_metric.h"
 #include "core/film/film_projection.h"
 #include "core/film/viscosity.h"
@@ -70,12 +71,16 @@ class CoupledStep {
   absl::Status open_to_initial_thickness(SimulationState& state);
 
   /// @param injected  volume into each cell of each film [m3]
-  StepOutcome try_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt);
+  /// @param outcome   what came of it; the memory of an earlier one is used again, so that steps allocate nothing
+  void try_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt,
+                StepOutcome& outcome);
 
   int n_dofs() const { return tissue_ ? tissue_->tissue.n_dofs() : 0; }
   const TissueSetup* tissue() const { return tissue_.get(); }
   /// Mid-surface metric of a film for a state.
   film::FilmMetric film_metric(const SimulationState& state, int film) const;
+  /// Areas of the cells of a film for a state, until the next step [m2] (n_cells).
+  const Eigen::VectorXd& measure_area(const SimulationState& state, int film);
   /// Cell areas at rest, of a film [m2].
   const Eigen::VectorXd& rest_area(int film) const { return rest_area_[film]; }
   /// Figures of a state that does not come from try_step: gap, void, energies, springs.
@@ -105,26 +110,30 @@ class CoupledStep {
   void renew_mobility(SimulationState& state, const coupling::FilmSolution& at);
   double measure_factor_error();
   void predict(const SimulationState& from, double dt, SimulationState& next, coupling::FilmSolution& solution);
-  Eigen::VectorXd coupling_force(const Eigen::VectorXd& pressure) const;
-  double force_error(const Eigen::VectorXd& force, const Eigen::VectorXd& pressure) const;
-  Eigen::VectorXd compute_residual_force(const SimulationState& from, const Eigen::Matrix3Xd& x, double dt) const;
+  void set_gap_without_pressure(const coupling::FilmSolution& solution);
+  void add_coupling_force(const Eigen::VectorXd& pressure, Eigen::VectorXd& force);
+  double force_error(const Eigen::VectorXd& force, const Eigen::VectorXd& pressure);
+  void compute_residual_force(const SimulationState& from, const Eigen::Matrix3Xd& x, double dt,
+                              Eigen::VectorXd& force);
   void begin_film_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt);
-  Eigen::VectorXd move_freely(size_t film_index, const FilmState& film, const film::Fat& fat, double dt);
-  coupling::WallCompliance wall_compliance();
+  void move_freely(size_t film_index, const FilmState& film, const film::Fat& fat, double dt,
+                   Eigen::VectorXd& velocity);
+  void update_metric(const SimulationState& state, size_t film_index);
+  void set_walls(coupling::WallCompliance& walls);
   bool is_implicit() const { return tissue_ && !factor_->has_compliance(); }
   coupling::FilmTolerance film_tolerance() const;
-  Eigen::VectorXd gather_tissue_part(const Eigen::VectorXd& all_cells) const;
+  void gather_tissue_part(const Eigen::VectorXd& all_cells, Eigen::VectorXd& part) const;
   void add_displacement(const Eigen::VectorXd& dx, Eigen::Matrix3Xd& x) const;
-  Eigen::VectorXd gap_of_walls(const Eigen::VectorXd& pressure) const;
-  Eigen::VectorXd lowest_pressure(const SimulationState& state) const;
-  double gap_error(const Eigen::VectorXd& gap, const Eigen::VectorXd& volume) const;
+  void set_gap_of_walls(const Eigen::VectorXd& pressure, Eigen::VectorXd& gap) const;
+  void set_lowest_pressure(const SimulationState& state, Eigen::VectorXd& lowest) const;
+  double gap_error(const Eigen::VectorXd& gap, const coupling::FilmSolution& solution) const;
   void enter_injected_cells(const std::vector<Eigen::VectorXd>& injected, SimulationState& state) const;
   void finish_films(const SimulationState& from, double dt, const coupling::FilmSolution& solution,
                     SimulationState& next) const;
   void finish_tissue(const SimulationState& from, double dt, StepOutcome& outcome);
   int n_ligament_springs() const;
-  Eigen::VectorXd compute_gap(const SimulationState& state);
-  Eigen::VectorXd gather(const SimulationState& state, Eigen::VectorXd FilmState::*values) const;
+  void compute_gap(const SimulationState& state, Eigen::VectorXd& gap);
+  void gather(const SimulationState& state, Eigen::VectorXd FilmState::*values, Eigen::VectorXd& all) const;
   void describe_tissue(StepOutcome& outcome, double dt);
   bool begin_tissue_step(const SimulationState& from, double dt, StepOutcome& outcome,
                          const coupling::FilmSolution& start);
@@ -134,8 +143,7 @@ class CoupledStep {
   double measure_error(const coupling::FilmSolution& solution, double force_tolerance, StepOutcome& outcome);
   bool solve_tissue_and_films(const SimulationState& from, double dt, StepOutcome& outcome,
                               coupling::FilmSolution& solution);
-  bool solve_films(const Eigen::VectorXd& gap_without_pressure, const Eigen::VectorXd& lowest, StepOutcome& outcome,
-                   coupling::FilmSolution& solution);
+  bool solve_films(StepOutcome& outcome, coupling::FilmSolution& solution);
 
   const FaceModel& model_;
   const std::vector<FilmLayout>& films_;
@@ -155,6 +163,7 @@ class CoupledStep {
   std::vector<std::unique_ptr<film::FilmProjection>> projections_;
   std::unique_ptr<coupling::FilmSolver> film_solver_;
   std::vector<film::ImplicitViscosity> viscosity_;
+  std::vector<film::Advection> advection_;
   std::vector<film::FilmMetric> metric_;  ///< of the step under way
   Eigen::Matrix3Xd forces_positions_;     ///< where the tissue's forces are
   Eigen::VectorXd forces_springs_;
@@ -165,8 +174,25 @@ class CoupledStep {
   std::vector<Eigen::VectorXd> kept_mobility_;  ///< of each film, in the preconditioner at hand
   bool has_lagged_mobility_ = false;            ///< the state keeps the mobility that pressures are preconditioned with
   StepCost cost_;
-  double least_force_ = 0.0;         ///< what counts as no force beside it [N]
-  Eigen::VectorXd force_;            ///< residual force without that of the films [N]
+  double least_force_ = 0.0;  ///< what counts as no force beside it [N]
+  Eigen::VectorXd force_;     ///< residual force without that of the films [N]
+  /// What a step writes into again and again.
+  struct Workspace {
+    coupling::FilmSolution solution;
+    coupling::WallCompliance walls;
+    Eigen::VectorXd pressure;              ///< of cells on tissue
+    Eigen::VectorXd force;                 ///< what a solve starts from
+    Eigen::VectorXd response;              ///< of the gaps on tissue
+    Eigen::VectorXd gap_without_pressure;  ///< of all cells
+    Eigen::VectorXd lowest;                ///< pressure, empty: no limit
+    Eigen::VectorXd displacement;          ///< of the degrees of freedom
+    Eigen::VectorXd of_films;              ///< force of the films
+    Eigen::VectorXd moved;                 ///< since the start of the step, of the degrees of freedom
+    Eigen::VectorXd rate;                  ///< of all cells
+    std::vector<Eigen::VectorXd> mobility;
+    Eigen::VectorXd thickness, edge_thickness, viscous, height;  ///< of one film
+  };
+  Workspace work_;
   Eigen::MatrixXd full_compliance_;  ///< of all cells, when films with other walls stand beside those on tissue
 };
 

@@ -17,7 +17,7 @@ constexpr double kMaxFactorBytes = 4.0 * kGibibyte;
 
 /// Films on tissue of more cells have no dense compliance: it would take longer than the solves that it saves, and more
 /// memory than the factor.
-constexpr int kMaxDenseCells = 4096;
+constexpr int kMaxDenseCells = 16384;
 /// Of stiffness times extent: a balance of forces this small is round-off.
 constexpr double kLeastForceShare = 1e-10;
 
@@ -64,6 +64,7 @@ absl::Status CoupledStep::set_up() {
     gap_of_film_.push_back(-1);
     projections_.push_back(std::make_unique<film::FilmProjection>(film.grid));
     viscosity_.emplace_back(film.grid);
+    advection_.emplace_back(film.grid);
     if (film.wall != FilmWallKind::kTissue) continue;
     gap_of_film_.back() = static_cast<int>(gaps.size());
     gaps.emplace_back(model_.geometry.grid, tissue_->walls[gaps.size()], film.grid, tissue_->tissue.dof_of_component(),

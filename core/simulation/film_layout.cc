@@ -17,8 +17,6 @@ namespace {
 constexpr double kMetrePerMillimetre = 1e-3;
 constexpr double kStiffnessUnit = 1e6;  ///< Pa/m in a kPa/mm
 constexpr int kMaxFilmCells = 65536;
-/// A film on tissue solves a dense system in its cells.
-constexpr int kMaxTissueFilmCells = 16384;
 constexpr double kCoarsestRatio = 2.0;
 constexpr double kThickest_mm = 50.0;
 
@@ -43,12 +41,11 @@ void check_thickness(const geometry::ScalarField& field, const std::string& name
 }
 
 void check_grid_counts(const FilmSpec& spec, FieldViolations& violations) {
-  const int most = spec.wall == FilmWallKind::kTissue ? kMaxTissueFilmCells : kMaxFilmCells;
-  violations.check_range("n_xi", spec.n_xi, 1, most, "cells");
-  violations.check_range("n_eta", spec.n_eta, 1, most, "cells");
-  if (static_cast<int64_t>(spec.n_xi) * spec.n_eta > most) {
+  violations.check_range("n_xi", spec.n_xi, 1, kMaxFilmCells, "cells");
+  violations.check_range("n_eta", spec.n_eta, 1, kMaxFilmCells, "cells");
+  if (static_cast<int64_t>(spec.n_xi) * spec.n_eta > kMaxFilmCells) {
     violations.add("n_xi", absl::StrCat("times n_eta is ", static_cast<int64_t>(spec.n_xi) * spec.n_eta,
-                                        " cells, must be at most ", most));
+                                        " cells, must be at most ", kMaxFilmCells));
   }
 }
 

@@ -21,7 +21,7 @@ constexpr double kLeakFullThickness = 0.01e-3;
 /// Fat enters the cells beside those whose pressure is above the entry pressure.
 void enter_cells_beside_pressure(const FilmLayout& layout, FilmState& film) {
   if (film.is_entered.size() == 0) return;
-  const Eigen::VectorXd before = film.is_entered;
+  const Eigen::VectorXd before = film.is_entered;  // fat enters one cell a step
   const auto presses = [&](int cell) {
     return before[cell] > 0.0 && film.pressure[cell] > layout.connective_tissue.entry_pressure;
   };
@@ -40,40 +40,61 @@ film::FilmMetric CoupledStep::film_metric(const SimulationState& state, int film
   return film::compute_film_metric(films_[film].grid, gaps_->film(gap_of_film_[film]).mid_surface(state.positions));
 }
 
+const Eigen::VectorXd& CoupledStep::measure_area(const SimulationState& state, int film) {
+  metric_.resize(films_.size());
+  update_metric(state, static_cast<size_t>(film));
+  return metric_[film].area;
+}
+
+/// metric_ of a film whose walls have moved.
+void CoupledStep::update_metric(const SimulationState& state, size_t f) {
+  if (gap_of_film_[f] < 0) {
+    if (metric_[f].area.size() == 0) metric_[f] = rest_metric_[f];
+    return;
+  }
+  gaps_->film(gap_of_film_[f]).mid_surface(state.positions, metric_[f].vertices);
+  film::update_film_metric(films_[f].grid, metric_[f]);
+}
+
 void CoupledStep::begin_film_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected,
                                   double dt) {
   metric_.resize(films_.size());
   for (size_t f = 0; f < films_.size(); ++f) {
     const FilmState& film = state.films[f];
     const film::FilmGrid& grid = films_[f].grid;
-    metric_[f] = film_metric(state, static_cast<int>(f));
-    film::FilmStepInput input;
+    update_metric(state, f);
+    film::FilmStepInput& input = projections_[f]->next_input();
     input.metric = &metric_[f];
     input.fat = fat_;
     input.fat.wall_friction = films_[f].wall_friction;
     input.volume = film.volume;
     input.injected = injected[f];
-    input.velocity =
-        input.fat.has_inertia() ? move_freely(f, film, input.fat, dt) : Eigen::VectorXd::Zero(grid.n_edges());
-    const Eigen::VectorXd height = (gravity_.transpose() * metric_[f].centre).transpose();
-    input.body_force = fat_.density * film::compute_edge_difference(grid, height);
+    if (input.fat.has_inertia()) {
+      move_freely(f, film, input.fat, dt, input.velocity);
+    } else {
+      input.velocity.setZero(grid.n_edges());
+    }
+    work_.height.noalias() = metric_[f].centre.transpose() * gravity_;
+    film::compute_edge_difference(grid, work_.height, input.body_force);
+    input.body_force *= fat_.density;
     input.dt = dt;
     input.wall_stress = film.wall_stress;
     input.is_closed.assign(film.is_entered.size(), 0);
     for (Eigen::Index cell = 0; cell < film.is_entered.size(); ++cell)
       input.is_closed[cell] = film.is_entered[cell] == 0.0;
     input.leak_full_thickness = kLeakFullThickness;
-    projections_[f]->begin_step(std::move(input));
+    projections_[f]->begin_step();
   }
 }
 
 /// Viscosity and advection: the velocity that the pressure then corrects.
-Eigen::VectorXd CoupledStep::move_freely(size_t f, const FilmState& film, const film::Fat& fat, double dt) {
+void CoupledStep::move_freely(size_t f, const FilmState& film, const film::Fat& fat, double dt,
+                              Eigen::VectorXd& velocity) {
   const film::FilmGrid& grid = films_[f].grid;
-  const Eigen::VectorXd h = film.volume.cwiseMax(0.0).cwiseQuotient(metric_[f].area);
-  const Eigen::VectorXd edge_h = film::compute_edge_thickness(grid, h, film.velocity);
-  const Eigen::VectorXd viscous = viscosity_[f].advance(grid, metric_[f], fat, h, edge_h, film.velocity, dt);
-  return film::advect_velocity(grid, metric_[f], viscous, dt);
+  work_.thickness = film.volume.cwiseMax(0.0).cwiseQuotient(metric_[f].area);
+  film::compute_edge_thickness(grid, work_.thickness, film.velocity, work_.edge_thickness);
+  viscosity_[f].advance(grid, metric_[f], fat, work_.thickness, work_.edge_thickness, film.velocity, dt, work_.viscous);
+  advection_[f].advance(metric_[f], work_.viscous, dt, velocity);
 }
 
 /// On tissue a step is solved again from new positions, so that its films need be no more exact than that.
@@ -84,56 +105,53 @@ coupling::FilmTolerance CoupledStep::film_tolerance() const {
 }
 
 /// The compliance of every cell's walls, in the order of all cells.
-coupling::WallCompliance CoupledStep::wall_compliance() {
-  coupling::WallCompliance walls;
+void CoupledStep::set_walls(coupling::WallCompliance& walls) {
   walls.diagonal.setZero(cell_offset_.back());
   for (size_t f = 0; f < films_.size(); ++f) {
     if (films_[f].wall != FilmWallKind::kWinkler) continue;
     walls.diagonal.segment(cell_offset_[f], films_[f].grid.n_cells()) = rest_area_[f] / films_[f].wall_stiffness;
   }
-  if (cell_of_tissue_.empty()) return walls;
+  if (cell_of_tissue_.empty()) return;
   const Eigen::VectorXd& lumped = factor_->lumped_compliance();
   const double mean = lumped.mean();
   for (size_t k = 0; k < cell_of_tissue_.size(); ++k) {
     const double own = is_implicit() ? mean : factor_->compliance()(k, k);
     walls.diagonal[cell_of_tissue_[k]] = std::max(lumped[k], kLeastLumpedShare * own);
   }
-  if (coupling_ == CouplingMode::kLumped) return walls;
+  if (coupling_ == CouplingMode::kLumped) return;
   if (is_implicit()) {
     walls.tissue = factor_.get();
     walls.tissue_cells = &cell_of_tissue_;
-    return walls;
+    return;
   }
   const Eigen::MatrixXd& c = factor_->compliance();
   walls.dense = &c;
-  if (static_cast<int>(cell_of_tissue_.size()) == cell_offset_.back()) return walls;
+  if (static_cast<int>(cell_of_tissue_.size()) == cell_offset_.back()) return;
   full_compliance_ = walls.diagonal.asDiagonal();
   for (size_t b = 0; b < cell_of_tissue_.size(); ++b) {
     for (size_t a = 0; a < cell_of_tissue_.size(); ++a)
       full_compliance_(cell_of_tissue_[a], cell_of_tissue_[b]) = c(a, b);
   }
   walls.dense = &full_compliance_;
-  return walls;
 }
 
 /// Rest + C p of the cells that have walls of their own, rest of the others.
-Eigen::VectorXd CoupledStep::gap_of_walls(const Eigen::VectorXd& pressure) const {
-  Eigen::VectorXd gap = rest_volume_;
+void CoupledStep::set_gap_of_walls(const Eigen::VectorXd& pressure, Eigen::VectorXd& gap) const {
+  gap = rest_volume_;
   for (size_t f = 0; f < films_.size(); ++f) {
     if (films_[f].wall != FilmWallKind::kWinkler) continue;
     const int n = films_[f].grid.n_cells();
     gap.segment(cell_offset_[f], n) +=
         pressure.segment(cell_offset_[f], n).cwiseProduct(rest_area_[f]) / films_[f].wall_stiffness;
   }
-  return gap;
 }
 
 /// Empty when no film has a limit. Cells that fat has not entered are held together by tissue, and rigid walls keep
 /// whatever pressure there is.
-Eigen::VectorXd CoupledStep::lowest_pressure(const SimulationState& state) const {
+void CoupledStep::set_lowest_pressure(const SimulationState& state, Eigen::VectorXd& lowest) const {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
-  if (-suction_limit_ == kNone) return {};
-  Eigen::VectorXd lowest = Eigen::VectorXd::Constant(cell_offset_.back(), -suction_limit_);
+  if (-suction_limit_ == kNone) return;
+  lowest.setConstant(cell_offset_.back(), -suction_limit_);
   for (size_t f = 0; f < films_.size(); ++f) {
     auto of_film = lowest.segment(cell_offset_[f], films_[f].grid.n_cells());
     if (films_[f].wall == FilmWallKind::kRigid) of_film.setConstant(kNone);
@@ -142,7 +160,6 @@ Eigen::VectorXd CoupledStep::lowest_pressure(const SimulationState& state) const
       if (entered[cell] == 0.0) of_film[cell] = kNone;
     }
   }
-  return lowest;
 }
 
 /// The cannula parts the tissue where it delivers.
@@ -159,7 +176,7 @@ void CoupledStep::finish_films(const SimulationState& from, double dt, const cou
                                SimulationState& next) const {
   for (size_t f = 0; f < films_.size(); ++f) {
     const film::FilmGrid& grid = films_[f].grid;
-    const film::FilmProjection& projection = *projections_[f];
+    film::FilmProjection& projection = *projections_[f];
     FilmState& film = next.films[f];
     film.pressure = solution.pressure.segment(cell_offset_[f], grid.n_cells());
     film.volume = solution.volume.segment(cell_offset_[f], grid.n_cells());

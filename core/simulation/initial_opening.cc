@@ -52,8 +52,8 @@ bool CoupledStep::open_to(const Eigen::VectorXd& target, double tolerance, Simul
   for (int iteration = 0; iteration < kMaxOpeningIterations; ++iteration) {
     if (!linearise_tissue(state, kOpeningStep, coupling::Precision::kDouble)) return false;
     // From the present positions at rest: no inertia and no damping, weight and internal force only.
-    const Eigen::VectorXd force = compute_residual_force(state, state.positions, kOpeningStep);
-    Eigen::VectorXd response, dx;
+    Eigen::VectorXd force, response, dx;
+    compute_residual_force(state, state.positions, kOpeningStep, force);
     factor_->solve_gap_response(force, response);
     const Eigen::VectorXd opening = target - gaps_->volume() - response;
     if (factor_->has_compliance()) {
@@ -90,7 +90,8 @@ absl::Status CoupledStep::open_to_initial_thickness(SimulationState& state) {
                               (state.films[f].volume - rest_volume_.segment(cell_offset_[f], films_[f].grid.n_cells()))
                                   .cwiseQuotient(rest_area_[f]);
   }
-  const Eigen::VectorXd opening = gather_tissue_part(initial - rest_volume_);
+  Eigen::VectorXd opening;
+  gather_tissue_part(initial - rest_volume_, opening);
   if (opening.size() == 0 || opening.cwiseAbs().maxCoeff() == 0.0) return absl::OkStatus();
   Eigen::VectorXd pressure;
   for (int load = 1; load <= kOpeningLoadSteps; ++load) {

@@ -98,10 +98,10 @@ absl::Status InjectionSchedule::add(const FaceModel& model, const std::vector<Fi
   return absl::OkStatus();
 }
 
-std::vector<Eigen::VectorXd> InjectionSchedule::deliver(const std::vector<FilmLayout>& films,
-                                                        const std::vector<FilmState>& states, double time, double dt) {
-  std::vector<Eigen::VectorXd> received;
-  for (const FilmLayout& film : films) received.push_back(Eigen::VectorXd::Zero(film.grid.n_cells()));
+void InjectionSchedule::deliver(const std::vector<FilmLayout>& films, const std::vector<FilmState>& states, double time,
+                                double dt, std::vector<Eigen::VectorXd>& received) {
+  received.resize(films.size());
+  for (size_t f = 0; f < films.size(); ++f) received[f].setZero(films[f].grid.n_cells());
   for (Injection& injection : injections_) {
     const double amount = due(injection, time + dt) - injection.delivered;
     if (amount == 0.0) continue;
@@ -123,7 +123,6 @@ std::vector<Eigen::VectorXd> InjectionSchedule::deliver(const std::vector<FilmLa
     injection.delivered += limited ? given : amount;
     delivered_ += limited ? given : amount;
   }
-  return received;
 }
 
 double InjectionSchedule::due(const Injection& injection, double time) {
@@ -149,8 +148,13 @@ double InjectionSchedule::undelivered(double time) const {
 
 std::vector<double> InjectionSchedule::delivered_each() const {
   std::vector<double> each;
-  for (const Injection& injection : injections_) each.push_back(injection.delivered);
+  get_delivered(each);
   return each;
+}
+
+void InjectionSchedule::get_delivered(std::vector<double>& each) const {
+  each.resize(injections_.size());
+  for (size_t k = 0; k < injections_.size(); ++k) each[k] = injections_[k].delivered;
 }
 
 void InjectionSchedule::restore_delivered(const std::vector<double>& each, double total) {

@@ -21,8 +21,8 @@ class InjectionSchedule {
 
   /// Volume that each cell of each film receives between `time` and `time + dt`, and notes it as delivered [m3]. No
   /// more is taken out of a cell than nearly all that it holds; the rest stays due. Rigid walls keep their film full.
-  std::vector<Eigen::VectorXd> deliver(const std::vector<FilmLayout>& films, const std::vector<FilmState>& states,
-                                       double time, double dt);
+  void deliver(const std::vector<FilmLayout>& films, const std::vector<FilmState>& states, double time, double dt,
+               std::vector<Eigen::VectorXd>& received);
 
   /// What is due by `time` and not delivered: more was to be taken out than was there [m3], negative or 0.
   double undelivered(double time) const;
@@ -37,6 +37,7 @@ class InjectionSchedule {
 
   /// Mutable part, for snapshots: what each injection has delivered.
   std::vector<double> delivered_each() const;
+  void get_delivered(std::vector<double>& each) const;
   void restore_delivered(const std::vector<double>& each, double total);
 
  private:

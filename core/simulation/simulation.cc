@@ -105,35 +105,33 @@ void Simulation::advance_step() {
 void Simulation::Impl::advance() {
   stepper->reset_cost();
   try {
-    StepOutcome outcome = try_with_smaller_steps();
-    if (!outcome.accepted) return fail(outcome.reason);
-    const double dt = outcome.state.time - state.time;
-    accept(std::move(outcome), dt);
+    try_with_smaller_steps();
+    if (!attempt.accepted) return fail(attempt.reason);
+    accept(attempt.state.time - state.time);
   } catch (const std::exception& error) {
     fail(absl::StrCat("ran out of a resource: ", error.what()));
   }
 }
 
-StepOutcome Simulation::Impl::try_with_smaller_steps() {
-  const std::vector<double> delivered = schedule.delivered_each();
+void Simulation::Impl::try_with_smaller_steps() {
+  schedule.get_delivered(delivered_before);
   const double total = schedule.delivered();
   const double smallest = spec.step * kSmallestStepShare;
-  StepOutcome outcome;
   uint64_t rejected = state.rejected_steps;
   for (double dt = first_step_to_try(smallest); dt >= smallest;) {
-    outcome = stepper->try_step(state, schedule.deliver(films, state.films, state.time, dt), dt);
-    outcome.state.rejected_steps = rejected;
-    if (outcome.accepted) {
-      outcome.error = estimate_error(outcome.state, dt);
-      if (dt <= spec.step || outcome.error <= spec.error_tolerance) return outcome;
+    schedule.deliver(films, state.films, state.time, dt, injected);
+    stepper->try_step(state, injected, dt, attempt);
+    attempt.state.rejected_steps = rejected;
+    if (attempt.accepted) {
+      attempt.error = estimate_error(attempt.state, dt);
+      if (dt <= spec.step || attempt.error <= spec.error_tolerance) return;
     }
-    schedule.restore_delivered(delivered, total);
+    schedule.restore_delivered(delivered_before, total);
     ++rejected;
-    dt = outcome.accepted ? std::max(spec.step, std::min(0.5 * dt, allowed_step(dt, outcome.error))) : 0.5 * dt;
+    dt = attempt.accepted ? std::max(spec.step, std::min(0.5 * dt, allowed_step(dt, attempt.error))) : 0.5 * dt;
   }
-  outcome.accepted = false;
-  outcome.reason = absl::StrCat("at ", state.time, " s, with steps down to ", smallest * 1e3, " ms: ", outcome.reason);
-  return outcome;
+  attempt.accepted = false;
+  attempt.reason = absl::StrCat("at ", state.time, " s, with steps down to ", smallest * 1e3, " ms: ", attempt.reason);
 }
 
 /// The step chosen, or less: where steps may grow while injecting, one ends where an injection starts or ends, so that
@@ -156,11 +154,10 @@ double Simulation::Impl::next_mark() const {
 double Simulation::Impl::estimate_error(const SimulationState& next, double dt) const {
   double deviation = 0.0;
   if (state.positions.size() > 0) {
-    const Eigen::Matrix3Xd off = next.positions - state.positions - dt * state.velocities;
-    deviation = off.colwise().norm().maxCoeff();
+    deviation = (next.positions - state.positions - dt * state.velocities).colwise().norm().maxCoeff();
   }
   for (size_t f = 0; f < films.size(); ++f) {
-    const Eigen::VectorXd off = next.films[f].volume - state.films[f].volume - dt * state.films[f].volume_rate;
+    const auto off = next.films[f].volume - state.films[f].volume - dt * state.films[f].volume_rate;
     deviation = std::max(deviation, off.cwiseQuotient(stepper->rest_area(static_cast<int>(f))).cwiseAbs().maxCoeff());
   }
   return deviation * dt / (dt + state.last_step);
@@ -171,15 +168,15 @@ double Simulation::Impl::allowed_step(double dt, double error) const {
   return kStepSafety * dt * std::sqrt(std::min(room, 1e6));
 }
 
-void Simulation::Impl::accept(StepOutcome outcome, double dt) {
+void Simulation::Impl::accept(double dt) {
   const double last_speed = state.skin_speed;
-  const bool ends_at_mark = spec.max_injection_step.has_value() && is_round_off_from(outcome.state.time, next_mark());
-  if (ends_at_mark) outcome.state.time = next_mark();
-  fill_report(outcome, dt);
+  const bool ends_at_mark = spec.max_injection_step.has_value() && is_round_off_from(attempt.state.time, next_mark());
+  if (ends_at_mark) attempt.state.time = next_mark();
+  fill_report(attempt, dt);
   report.settling_error = estimate_settling_error(last_speed, dt);
-  state = std::move(outcome.state);
+  std::swap(state, attempt.state);
   state.skin_speed = report.skin_speed;
-  choose_next_step(outcome, dt);
+  choose_next_step(attempt, dt);
   if (ends_at_mark) state.next_step = spec.step;
   decide_phase();
 }

@@ -32,15 +32,20 @@ struct Simulation::Impl {
   StepReport report;
   std::vector<LigamentReport> ligaments;
   double initial_volume = 0.0;
+  // What a step writes into again and again.
+  StepOutcome attempt;                    ///< what came of the last try
+  std::vector<Eigen::VectorXd> injected;  ///< a film [m3] (n_cells)
+  std::vector<double> delivered_before;   ///< an injection [m3]
+  Eigen::Matrix3Xd moved_skin;            ///< [m] (3, nodes_per_level)
 
   absl::Status set_up();
   absl::Status place_probes();
   absl::Status add_injection(const InjectionSpec& injection, double now);
   void advance();
-  StepOutcome try_with_smaller_steps();
+  void try_with_smaller_steps();
   double first_step_to_try(double smallest) const;
   double next_mark() const;
-  void accept(StepOutcome outcome, double dt);
+  void accept(double dt);
   double estimate_error(const SimulationState& next, double dt) const;
   double allowed_step(double dt, double error) const;
   double estimate_settling_error(double last_speed, double dt) const;

@@ -33,10 +33,6 @@ struct FilmFigures {
   double mean_pressure() const { return area > 0.0 ? pressure_area / area : 0.0; }
 };
 
-double largest_column(const Eigen::Matrix3Xd& vectors) {
-  return vectors.cols() == 0 ? 0.0 : vectors.colwise().norm().maxCoeff();
-}
-
 }  // namespace
 
 Eigen::Matrix3Xd Simulation::Impl::skin_positions() const {
@@ -59,7 +55,7 @@ void Simulation::Impl::fill_report(const StepOutcome& outcome, double dt) {
   report.probe_thickness.assign(probes.size(), 0.0);
   report.probe_pressure.assign(probes.size(), 0.0);
   for (size_t f = 0; f < films.size(); ++f) {
-    const Eigen::VectorXd area = stepper->film_metric(next, static_cast<int>(f)).area;
+    const Eigen::VectorXd& area = stepper->measure_area(next, static_cast<int>(f));
     const FilmState& film = next.films[f];
     for (int cell = 0; cell < films[f].grid.n_cells(); ++cell) figures.add(film, cell, area[cell]);
     for (size_t k = 0; k < probes.size(); ++k) {
@@ -109,17 +105,16 @@ void Simulation::Impl::fill_report(const StepOutcome& outcome, double dt) {
   report.min_scaled_jacobian = outcome.min_scaled_jacobian;
   if (stepper->tissue() == nullptr) return;
   const geometry::LayeredGrid& grid = model->geometry.grid;
-  Eigen::Matrix3Xd skin(3, grid.nodes_per_level());
+  moved_skin.resize(3, grid.nodes_per_level());
   double speed = 0.0;
   for (int s = 0; s < grid.nodes_per_level(); ++s) {
     const int node = stepper->tissue()->skin_nodes[s];
-    skin.col(s) = next.positions.col(node);
+    moved_skin.col(s) = next.positions.col(node);
     speed = std::max(speed, next.velocities.col(node).norm());
   }
-  const Eigen::Matrix3Xd rest = grid.nodes.leftCols(grid.nodes_per_level());
   report.skin_speed = speed;
-  report.skin_max_displacement = largest_column(skin - rest);
-  report.skin_volume_change = coupling::compute_swept_volume(grid, rest, skin);
+  report.skin_max_displacement = (moved_skin - grid.nodes.leftCols(moved_skin.cols())).colwise().norm().maxCoeff();
+  report.skin_volume_change = coupling::compute_swept_volume(grid, grid.nodes, moved_skin);
 }
 
 void Simulation::Impl::report_ligaments(const StepOutcome& outcome) {

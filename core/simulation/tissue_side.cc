@@ -1,7 +1,6 @@
 // The tissue's side of a coupled step: its forces, its factor and how long that serves, what becomes of it.
 
 #include <algorithm>
-#include <utility>
 
 #include "core/simulation/coupled_step.h"
 #include "core/solid/hex_quality.h"
@@ -67,7 +66,8 @@ bool CoupledStep::linearise_tissue(const SimulationState& state, double dt, coup
   if (!is_exact) return false;
   factored_dt_ = dt;
   factored_precision_ = precision;
-  film_solver_->pressure_solver().set_walls(wall_compliance());
+  set_walls(work_.walls);
+  film_solver_->pressure_solver().set_walls(work_.walls);
   return true;
 }
 
@@ -120,27 +120,31 @@ void CoupledStep::keep_mobility(const SimulationState& state) {
   film_solver_->pressure_solver().keep_mobility(kept_mobility_);
 }
 
-/// (B(x) - B0)^T p
-Eigen::VectorXd CoupledStep::coupling_force(const Eigen::VectorXd& pressure) const {
-  return gaps_->derivative().transpose() * pressure - factor_->derivative().transpose() * pressure;
+/// force + (B(x) - B0)^T p
+void CoupledStep::add_coupling_force(const Eigen::VectorXd& pressure, Eigen::VectorXd& force) {
+  work_.of_films.noalias() = gaps_->derivative().transpose() * pressure;
+  force += work_.of_films;
+  work_.of_films.noalias() = factor_->derivative().transpose() * pressure;
+  force -= work_.of_films;
 }
 
 /// What is out of balance, f + B^T p, over what is in it.
-double CoupledStep::force_error(const Eigen::VectorXd& force, const Eigen::VectorXd& pressure) const {
-  const Eigen::VectorXd of_films = gaps_->derivative().transpose() * pressure;
-  const double scale = of_films.norm() + tissue_->tissue.internal_force().norm() + least_force_;
-  return (force + of_films).norm() / scale;
+double CoupledStep::force_error(const Eigen::VectorXd& force, const Eigen::VectorXd& pressure) {
+  work_.of_films.noalias() = gaps_->derivative().transpose() * pressure;
+  const double scale = work_.of_films.norm() + tissue_->tissue.internal_force().norm() + least_force_;
+  return (force + work_.of_films).norm() / scale;
 }
 
 /// Weight - f_int - M (x - x_n - dt v_n)/dt^2 - D (x - x_n)/dt, a value a degree of freedom.
-Eigen::VectorXd CoupledStep::compute_residual_force(const SimulationState& from, const Eigen::Matrix3Xd& x,
-                                                    double dt) const {
+void CoupledStep::compute_residual_force(const SimulationState& from, const Eigen::Matrix3Xd& x, double dt,
+                                         Eigen::VectorXd& force) {
   const solid::Tissue& tissue = tissue_->tissue;
   const double alpha = tissue.damping().alpha;
   const double beta = tissue.damping().beta;
   const std::vector<int>& dofs = tissue.dof_of_component();
-  Eigen::VectorXd force = -tissue.internal_force();
-  Eigen::VectorXd moved(tissue.n_dofs());
+  force = -tissue.internal_force();
+  Eigen::VectorXd& moved = work_.moved;
+  moved.resize(tissue.n_dofs());
   for (size_t k = 0; k < dofs.size(); ++k) {
     if (dofs[k] < 0) continue;
     const auto node = static_cast<Eigen::Index>(k / 3);
@@ -151,7 +155,6 @@ Eigen::VectorXd CoupledStep::compute_residual_force(const SimulationState& from,
     force[dofs[k]] += mass * (gravity_[c] - (step - dt * from.velocities(c, node)) / (dt * dt) - alpha * step / dt);
   }
   if (beta > 0.0) force -= (beta / dt) * tissue.stiffness_times(moved);
-  return force;
 }
 
 void CoupledStep::add_displacement(const Eigen::VectorXd& dx, Eigen::Matrix3Xd& x) const {
@@ -165,7 +168,8 @@ void CoupledStep::add_displacement(const Eigen::VectorXd& dx, Eigen::Matrix3Xd& 
 bool CoupledStep::begin_tissue_step(const SimulationState& from, double dt, StepOutcome& outcome,
                                     const coupling::FilmSolution& start) {
   if (!tissue_) {
-    film_solver_->pressure_solver().set_walls(wall_compliance());
+    set_walls(work_.walls);
+    film_solver_->pressure_solver().set_walls(work_.walls);
     return true;
   }
   const bool is_due = from.factored_dt == 0.0 || from.late_iterations >= kLateIterationsOfAFactor;
@@ -183,7 +187,7 @@ bool CoupledStep::begin_tissue_step(const SimulationState& from, double dt, Step
   bring_forces_to(outcome.state, dt);
   const PhaseTimer timer(cost_.times.coupling);
   gaps_->evaluate(outcome.state.positions);
-  force_ = compute_residual_force(from, outcome.state.positions, dt);
+  compute_residual_force(from, outcome.state.positions, dt, force_);
   return true;
 }
 
@@ -197,12 +201,11 @@ bool CoupledStep::renew_factor(double dt, StepOutcome& outcome, const coupling::
 }
 
 void CoupledStep::renew_mobility(SimulationState& state, const coupling::FilmSolution& at) {
-  std::vector<Eigen::VectorXd> mobility;
   {
     const PhaseTimer timer(cost_.times.film);
-    film_solver_->measure_mobility(at, mobility);
+    film_solver_->measure_mobility(at, work_.mobility);
   }
-  for (size_t f = 0; f < films_.size(); ++f) state.films[f].factored_mobility = std::move(mobility[f]);
+  for (size_t f = 0; f < films_.size(); ++f) state.films[f].factored_mobility = work_.mobility[f];
   state.late_pressure_iterations = 0;
   keep_mobility(state);
 }
@@ -210,18 +213,23 @@ void CoupledStep::renew_mobility(SimulationState& state, const coupling::FilmSol
 /// What a solve under a load that bends and shears all there is, pressure in every film and weight, leaves of the load.
 double CoupledStep::measure_factor_error() {
   const solid::Tissue& tissue = tissue_->tissue;
-  Eigen::VectorXd load = gaps_->derivative().transpose() * Eigen::VectorXd::Ones(gaps_->volume().size());
-  const double pressure_size = load.norm();
-  Eigen::VectorXd weight = Eigen::VectorXd::Zero(load.size());
+  Eigen::VectorXd& load = work_.force;
+  Eigen::VectorXd& weight = work_.moved;
+  work_.pressure.setOnes(gaps_->volume().size());
+  load.noalias() = gaps_->derivative().transpose() * work_.pressure;
+  weight.setZero(load.size());
   for (size_t k = 0; k < tissue.dof_of_component().size(); ++k) {
     if (tissue.dof_of_component()[k] >= 0) weight[tissue.dof_of_component()[k]] = tissue.mass()[k / 3];
   }
+  const double pressure_size = load.norm();
   if (weight.norm() > 0.0) load += (pressure_size > 0.0 ? pressure_size : 1.0) / weight.norm() * weight;
-  Eigen::VectorXd response, moved;
-  factor_->solve_gap_response(load, response);
-  factor_->solve_displacement(Eigen::VectorXd::Zero(response.size()), moved);
-  const Eigen::VectorXd carried = tissue.system_matrix().selfadjointView<Eigen::Lower>() * moved;
-  return (carried - load).norm() / load.norm();
+  factor_->solve_gap_response(load, work_.response);
+  work_.pressure.setZero();
+  factor_->solve_displacement(work_.pressure, work_.displacement);
+  Eigen::VectorXd& left = work_.of_films;
+  left = -load;
+  left.noalias() += tissue.system_matrix().selfadjointView<Eigen::Lower>() * work_.displacement;
+  return left.norm() / load.norm();
 }
 
 /// Whether the factor at hand is of other positions than those of the iteration.
@@ -232,13 +240,12 @@ bool CoupledStep::is_late(const StepOutcome& outcome) const {
 bool CoupledStep::move_tissue(const SimulationState& from, double dt, const Eigen::VectorXd& pressure,
                               StepOutcome& outcome) {
   Eigen::Matrix3Xd& x = outcome.state.positions;
-  Eigen::VectorXd dx;
   {
     const PhaseTimer timer(cost_.times.solve);
-    factor_->solve_displacement(pressure, dx);
+    factor_->solve_displacement(pressure, work_.displacement);
     ++cost_.tissue_solves;
   }
-  add_displacement(dx, x);
+  add_displacement(work_.displacement, x);
   if (!x.allFinite()) {
     outcome.reason = "positions are not finite";
     return false;
@@ -247,7 +254,7 @@ bool CoupledStep::move_tissue(const SimulationState& from, double dt, const Eige
   {
     const PhaseTimer timer(cost_.times.coupling);
     gaps_->evaluate(x);
-    force_ = compute_residual_force(from, x, dt);
+    compute_residual_force(from, x, dt, force_);
   }
   const PhaseTimer timer(cost_.times.element);
   outcome.min_scaled_jacobian = solid::compute_min_scaled_jacobian(tissue_->tissue.mesh(), x);

@@ -1,13 +1,20 @@
 #include "core/solid/element_assembler.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
+#include "core/solid/geometric_stiffness.h"
 #include "core/solid/incompatible_modes.h"
+#include "core/solid/inversion_barrier.h"
 #include "core/solid/solid_shell.h"
 
 namespace lipofill::solid {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 HexStiffness compute_stiffness(const HexMesh& mesh, int hexahedron, const std::vector<ElasticMaterial>& materials) {
   const HexNodes nodes = mesh.gather(hexahedron, mesh.rest_positions);
@@ -16,97 +23,116 @@ HexStiffness compute_stiffness(const HexMesh& mesh, int hexahedron, const std::v
                                   : compute_solid_shell_stiffness(nodes, D);
 }
 
+/// Of each pair of nodes in binary order, whether the first comes before the second in the mesh.
+std::array<bool, kNodePairs> order_of_nodes(const std::array<int, 8>& hexahedron) {
+  std::array<bool, kNodePairs> before{};
+  for (int a = 0; a < 8; ++a) {
+    for (int b = 0; b < a; ++b) {
+      before[node_pair(a, b)] = hexahedron[kCornerOfBinary[a]] < hexahedron[kCornerOfBinary[b]];
+    }
+  }
+  return before;
+}
+
+/// Hexahedra by the order of their nodes, each list in the order of the mesh.
+std::map<std::array<bool, kNodePairs>, std::vector<int>> sort_by_order(const HexMesh& mesh) {
+  std::map<std::array<bool, kNodePairs>, std::vector<int>> sorted;
+  for (int e = 0; e < mesh.n_hexahedra(); ++e) sorted[order_of_nodes(mesh.hexahedra[e])].push_back(e);
+  return sorted;
+}
+
+void set_tension(const HexMesh& mesh, int e, const ElasticMaterial& material, int lane, ElementBatch& batch) {
+  const HexNodes rest = mesh.gather(e, mesh.rest_positions);
+  const double volume = 8.0 * compute_jacobian(rest, LocalPoint::Zero()).determinant();
+  const double nu = material.poisson_ratio;
+  batch.lambda[lane] = volume * material.youngs_modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+  batch.mu[lane] = volume * material.youngs_modulus / (2.0 * (1.0 + nu));
+  batch.squeezed_corner[lane] = InversionBarrier::kThreshold * InversionBarrier::find_largest_corner(rest);
+}
+
 }  // namespace
 
 ElementAssembler::ElementAssembler(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
-                                   const SystemPattern& pattern)
-    : n_hexahedra_(mesh.n_hexahedra()) {
-  const int n_batches = (n_hexahedra_ + kLanes - 1) / kLanes;
-  batches_.resize(n_batches);
-  for (int k = 0; k < n_batches; ++k) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const int e = std::min(k * kLanes + lane, n_hexahedra_ - 1);  // the last batch is filled up with copies
-      batches_[k].set_lane(lane, mesh.hexahedra[e], mesh.gather(e, mesh.rest_positions),
-                           compute_stiffness(mesh, e, materials));
+                                   const SystemPattern& pattern) {
+  const auto sorted = sort_by_order(mesh);
+  size_t n_batches = 0;
+  for (const auto& [order, hexahedra] : sorted) n_batches += (hexahedra.size() + kLanes - 1) / kLanes;
+  hexahedra_.reserve(n_batches);
+  forces_.reserve(n_batches);
+  stiffness_.reserve(n_batches);
+  for (const auto& [order, hexahedra] : sorted) {
+    for (size_t first = 0; first < hexahedra.size(); first += kLanes) {
+      Lane lanes;
+      for (size_t k = 0; k < kLanes; ++k) lanes[k] = first + k < hexahedra.size() ? hexahedra[first + k] : -1;
+      add_batch(mesh, materials, pattern, lanes);
+      stiffness_.back().is_transposed = order;
     }
-    scatters_.push_back(make_scatter(mesh, pattern, k * kLanes));
   }
 }
 
-ElementAssembler::Scatter ElementAssembler::make_scatter(const HexMesh& mesh, const SystemPattern& pattern,
-                                                         int first_hexahedron) {
-  const auto nowhere = static_cast<std::int32_t>(pattern.matrix().nonZeros());
-  Scatter scatter;
+/// Lanes that are left over are copies of the first without stiffness.
+void ElementAssembler::add_batch(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
+                                 const SystemPattern& pattern, const Lane& hexahedra) {
+  hexahedra_.push_back(hexahedra);
+  ElementBatch& force = forces_.emplace_back();
+  StiffnessBatch& stiffness = stiffness_.emplace_back();
   for (int lane = 0; lane < kLanes; ++lane) {
-    const bool padding = first_hexahedron + lane >= mesh.n_hexahedra();
-    const auto dof = [&](int a, int c) {
-      return padding ? -1 : pattern.dof_of_component()[3 * mesh.hexahedra[first_hexahedron + lane][a] + c];
-    };
+    const bool is_left_over = hexahedra[lane] < 0;
+    const int e = is_left_over ? hexahedra[0] : hexahedra[lane];
+    const HexStiffness K = is_left_over ? HexStiffness(HexStiffness::Zero()) : compute_stiffness(mesh, e, materials);
+    force.set_lane(lane, mesh.hexahedra[e], mesh.gather(e, mesh.rest_positions), K);
+    set_tension(mesh, e, materials[mesh.material[e]], lane, force);
+    stiffness.set_lane(lane, K);
     for (int a = 0; a < 8; ++a) {
-      for (int i = 0; i < 3; ++i) {
-        scatter.force[a][i][lane] = dof(a, i) < 0 ? pattern.n_dofs() : dof(a, i);
-        for (int column = 0; column < 3 * (a + 1); ++column) {
-          const int b = column / 3;
-          const int j = column % 3;
-          const bool kept = dof(a, i) >= 0 && dof(b, j) >= 0 && (a != b || i >= j);
-          scatter.stiffness[node_pair(a, b)][i][j][lane] = kept ? pattern.find(dof(a, i), dof(b, j)) : nowhere;
-        }
+      for (int b = 0; b <= a; ++b) {
+        const int block = is_left_over ? pattern.n_blocks()
+                                       : pattern.find_block(mesh.hexahedra[e][kCornerOfBinary[a]],
+                                                            mesh.hexahedra[e][kCornerOfBinary[b]]);
+        stiffness.block[node_pair(a, b)][lane] = block;
       }
     }
   }
-  return scatter;
 }
 
-/// @param compute  (batch index, result): fills at least force, energy and volume ratio
-template <typename Compute>
-ElementTotals ElementAssembler::add_batches(const Compute& compute, Eigen::VectorXd& force) const {
-  ElementTotals totals;
-  totals.min_volume_ratio = HUGE_VAL;
-  BatchResult result;
-  for (size_t k = 0; k < batches_.size(); ++k) {
-    compute(k, result);
-    scatter_force(result, scatters_[k], force.data());
-    const int lanes = std::min(kLanes, n_hexahedra_ - static_cast<int>(k) * kLanes);
-    for (int lane = 0; lane < lanes; ++lane) {
-      const double ratio = result.volume_ratio[lane];
-      totals.elastic_energy += result.energy[lane];
-      totals.min_volume_ratio = std::min(totals.min_volume_ratio, std::isfinite(ratio) ? ratio : -HUGE_VAL);
+template <bool kWithStiffness>
+ElementTotals ElementAssembler::add_batches(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force,
+                                            std::vector<int>& squeezed, double* blocks) const {
+  Lanes energy{};
+  Lanes least_ratio = fill_lanes(kInfinity);
+  LaneMask is_folded{};
+  for (size_t k = 0; k < forces_.size(); ++k) {
+    ElementPose pose;
+    add_element_forces(forces_[k], x.data(), pose, force.data());
+    energy += pose.energy;
+    const Lanes ratio = pose.volume_ratio - pose.volume_ratio == 0.0 ? pose.volume_ratio : fill_lanes(-kInfinity);
+    least_ratio = ratio < least_ratio ? ratio : least_ratio;
+    is_folded |= ~((pose.least_corner > 0.0) & (ratio > 0.0));
+    const LaneMask is_squeezed = ~(pose.least_corner >= forces_[k].squeezed_corner);
+    for (int lane = 0; any(is_squeezed) && lane < kLanes; ++lane) {
+      if (is_squeezed[lane] != 0 && hexahedra_[k][lane] >= 0) squeezed.push_back(hexahedra_[k][lane]);
     }
+    if (!kWithStiffness) continue;
+    Lanes geometric[kNodePairs];
+    compute_geometric_stiffness(forces_[k], pose.gradient, geometric);
+    const StiffnessBatch& next = stiffness_[std::min(k + 1, stiffness_.size() - 1)];
+    add_element_stiffness(stiffness_[k], next, pose.rotation, geometric, blocks);
+  }
+  ElementTotals totals{0.0, kInfinity, any(is_folded)};
+  for (int lane = 0; lane < kLanes; ++lane) {
+    totals.elastic_energy += energy[lane];
+    totals.min_volume_ratio = std::min(totals.min_volume_ratio, least_ratio[lane]);
   }
   return totals;
 }
 
-ElementTotals ElementAssembler::add(const Eigen::Matrix3Xd& x, Eigen::VectorXd& stiffness,
-                                    Eigen::VectorXd& force) const {
-  return add_batches(
-      [&](size_t k, BatchResult& result) {
-        compute_batch(batches_[k], x, result);
-        scatter_stiffness(result, scatters_[k], stiffness.data());
-      },
-      force);
+ElementTotals ElementAssembler::add_forces(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force,
+                                           std::vector<int>& squeezed) const {
+  return add_batches<false>(x, force, squeezed, nullptr);
 }
 
-ElementTotals ElementAssembler::add_force(const Eigen::Matrix3Xd& x, Eigen::VectorXd& force) const {
-  return add_batches([&](size_t k, BatchResult& result) { compute_batch_force(batches_[k], x, result); }, force);
-}
-
-void ElementAssembler::scatter_stiffness(const BatchResult& result, const Scatter& scatter, double* values) {
-  for (int pair = 0; pair < kNodePairs; ++pair) {
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        const Lanes& value = result.stiffness[pair].m[i][j];
-        for (int lane = 0; lane < kLanes; ++lane) values[scatter.stiffness[pair][i][j][lane]] += value[lane];
-      }
-    }
-  }
-}
-
-void ElementAssembler::scatter_force(const BatchResult& result, const Scatter& scatter, double* force) {
-  for (int a = 0; a < 8; ++a) {
-    for (int c = 0; c < 3; ++c) {
-      for (int lane = 0; lane < kLanes; ++lane) force[scatter.force[a][c][lane]] += result.force[a][c][lane];
-    }
-  }
+ElementTotals ElementAssembler::add(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force, std::vector<int>& squeezed,
+                                    NodeBlocks& blocks) const {
+  return add_batches<true>(x, force, squeezed, blocks.data());
 }
 
 }  // namespace lipofill::solid

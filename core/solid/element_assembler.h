@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <vector>
 
 #include "core/solid/element_batch.h"
 #include "core/solid/hex_mesh.h"
 #include "core/solid/material.h"
+#include "core/solid/node_blocks.h"
 #include "core/solid/system_pattern.h"
 
 namespace lipofill::solid {
@@ -15,37 +15,42 @@ namespace lipofill::solid {
 struct ElementTotals {
   double elastic_energy = 0.0;  ///< [J]
   double min_volume_ratio =
-      0.0;  ///< least det F at the centres, infinity without hexahedra, minus infinity when not finite
+      0.0;                 ///< least det F at the centres, infinity without hexahedra, minus infinity when not finite
+  bool is_folded = false;  ///< whether a corner's or a centre's volume is not positive, or not finite
 };
 
-/// The hexahedra of a tissue in batches, and where in the system each of their numbers goes.
+/// The hexahedra of a tissue in batches, and where in the system their numbers go. Positions and forces have four
+/// numbers a node here, a register each; the last has no meaning.
+///
+/// A batch takes hexahedra whose nodes are numbered in the same order, so that all lanes agree on which blocks are
+/// stored transposed; meshes in layers have one such order. Sums go batch by batch: they depend on the mesh alone.
+/// About 4.2 kB a hexahedron.
 class ElementAssembler {
  public:
   /// The mesh and materials have been checked (tissue_checks.h).
   ElementAssembler(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials, const SystemPattern& pattern);
 
-  /// Adds sum_e R K_e R^T to `stiffness` (one value a value of the pattern) and sum_e R K_e (R^T x - X) to `force`
-  /// (n_dofs); both have one more entry at their end, which collects what is fixed. Allocates nothing; sums in the
-  /// order of the mesh.
-  ElementTotals add(const Eigen::Matrix3Xd& x, Eigen::VectorXd& stiffness, Eigen::VectorXd& force) const;
-  /// The force alone, the same bits, at half the cost.
-  ElementTotals add_force(const Eigen::Matrix3Xd& x, Eigen::VectorXd& force) const;
+  /// Adds sum_e R K_e (R^T x - X) to `force` (4, n_nodes) and lists in `squeezed` the hexahedra that the inversion
+  /// barrier may have something to say about. Allocates nothing when that has room.
+  ElementTotals add_forces(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force, std::vector<int>& squeezed) const;
+  /// The same, the same bits, and adds sum_e R K_e R^T and K_G (geometric_stiffness.h) to `blocks`.
+  ElementTotals add(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force, std::vector<int>& squeezed,
+                    NodeBlocks& blocks) const;
+
+  size_t n_bytes() const { return forces_.size() * (sizeof(ElementBatch) + sizeof(StiffnessBatch)); }
 
  private:
-  struct Scatter {
-    std::int32_t stiffness[kNodePairs][3][3][kLanes];
-    std::int32_t force[8][3][kLanes];
-  };
+  using Lane = std::array<int, kLanes>;  ///< hexahedra of a batch, -1: left over
 
-  static Scatter make_scatter(const HexMesh& mesh, const SystemPattern& pattern, int first_hexahedron);
-  template <typename Compute>
-  ElementTotals add_batches(const Compute& compute, Eigen::VectorXd& force) const;
-  static void scatter_stiffness(const BatchResult& result, const Scatter& scatter, double* values);
-  static void scatter_force(const BatchResult& result, const Scatter& scatter, double* force);
+  void add_batch(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials, const SystemPattern& pattern,
+                 const Lane& hexahedra);
+  template <bool kWithStiffness>
+  ElementTotals add_batches(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force, std::vector<int>& squeezed,
+                            double* blocks) const;
 
-  int n_hexahedra_;
-  std::vector<ElementBatch> batches_;
-  std::vector<Scatter> scatters_;
+  std::vector<Lane> hexahedra_;
+  std::vector<ElementBatch> forces_;
+  std::vector<StiffnessBatch> stiffness_;
 };
 
 }  // namespace lipofill::solid

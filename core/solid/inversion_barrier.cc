@@ -3,9 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
-
-#include "core/solid/hex_shape.h"
 
 namespace lipofill::solid {
 namespace {
@@ -35,9 +34,9 @@ BarrierValue evaluate(double j) {
   return {at.b + at.slope * d + 0.5 * at.curvature * d * d, at.slope + at.curvature * d, at.curvature};
 }
 
-Eigen::Matrix3d gather_edges(const std::array<int, 8>& nodes, int corner, const Eigen::Matrix3Xd& x) {
+Eigen::Matrix3d gather_edges(const HexNodes& nodes, int corner) {
   Eigen::Matrix3d edges;
-  for (int k = 0; k < 3; ++k) edges.col(k) = x.col(nodes[kCorners[corner][k + 1]]) - x.col(nodes[kCorners[corner][0]]);
+  for (int k = 0; k < 3; ++k) edges.col(k) = nodes.col(kCorners[corner][k + 1]) - nodes.col(kCorners[corner][0]);
   return edges;
 }
 
@@ -72,61 +71,72 @@ Hessian positive_part(const Hessian& h) {
 
 }  // namespace
 
-InversionBarrier::InversionBarrier(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials) {
-  for (int e = 0; e < mesh.n_hexahedra(); ++e) {
-    Element element;
-    element.nodes = mesh.hexahedra[e];
-    const HexNodes rest = mesh.gather(e, mesh.rest_positions);
-    element.modulus =
-        materials[mesh.material[e]].youngs_modulus * compute_jacobian(rest, LocalPoint::Zero()).determinant();
-    for (int corner = 0; corner < 8; ++corner) {
-      const double determinant = gather_edges(element.nodes, corner, mesh.rest_positions).determinant();
-      element.inverse_rest[corner] = 1.0 / (kThreshold * determinant);
-    }
-    elements_.push_back(element);
+InversionBarrier::InversionBarrier(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials) : mesh_(&mesh) {
+  for (const ElasticMaterial& material : materials) youngs_modulus_.push_back(material.youngs_modulus);
+}
+
+double InversionBarrier::find_largest_corner(const HexNodes& nodes) {
+  double largest = 0.0;
+  for (int corner = 0; corner < 8; ++corner) largest = std::max(largest, gather_edges(nodes, corner).determinant());
+  return largest;
+}
+
+template <typename Visit>
+void InversionBarrier::for_each_squeezed_corner(int hexahedron, const Eigen::Matrix4Xd& x, Visit visit) const {
+  const HexNodes rest = mesh_->gather(hexahedron, mesh_->rest_positions);
+  HexNodes now;
+  for (int a = 0; a < 8; ++a) now.col(a) = x.col(mesh_->hexahedra[hexahedron][a]).head<3>();
+  for (int index = 0; index < 8; ++index) {
+    const Eigen::Matrix3d edges = gather_edges(now, index);
+    const double inverse_rest = 1.0 / (kThreshold * gather_edges(rest, index).determinant());
+    if (!(edges.determinant() * inverse_rest < 1.0)) continue;
+    const double modulus =
+        youngs_modulus_[mesh_->material[hexahedron]] * compute_jacobian(rest, LocalPoint::Zero()).determinant();
+    visit(Corner{index, edges, inverse_rest, modulus});
   }
 }
 
-double InversionBarrier::add(const Eigen::Matrix3Xd& x, const SystemPattern& pattern, Eigen::VectorXd& values,
-                             Eigen::VectorXd& force) const {
+double InversionBarrier::add_force(int hexahedron, const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force) const {
   double energy = 0.0;
-  for (const Element& element : elements_) {
-    for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Matrix3d edges = gather_edges(element.nodes, corner, x);
-      if (edges.determinant() * element.inverse_rest[corner] < 1.0) {
-        energy += add_corner(element, corner, edges, pattern, values, force);
-      }
+  for_each_squeezed_corner(hexahedron, x, [&](const Corner& corner) {
+    const double scale = corner.inverse_rest;
+    const BarrierValue barrier = evaluate(scale * corner.edges.determinant());
+    const Gradient f = corner.modulus * barrier.slope * scale * determinant_gradient(corner.edges);
+    const auto node = [&](int k) {
+      return force.col(mesh_->hexahedra[hexahedron][kCorners[corner.index][k]]).head<3>();
+    };
+    for (int k = 0; k < 3; ++k) {
+      node(k + 1) += f.segment<3>(3 * k);
+      node(0) -= f.segment<3>(3 * k);
     }
-  }
+    energy += corner.modulus * barrier.b;
+  });
   return energy;
 }
 
-double InversionBarrier::add_corner(const Element& element, int corner, const Eigen::Matrix3d& edges,
-                                    const SystemPattern& pattern, Eigen::VectorXd& values,
-                                    Eigen::VectorXd& force) const {
-  const double scale = element.inverse_rest[corner];
-  const BarrierValue barrier = evaluate(scale * edges.determinant());
-  const Gradient g = scale * determinant_gradient(edges);
-  const Gradient f = element.modulus * barrier.slope * g;
-  const Hessian h = element.modulus * positive_part(barrier.curvature * g * g.transpose() +
-                                                    barrier.slope * scale * determinant_hessian(edges));
+void InversionBarrier::add_tangent(int hexahedron, const Eigen::Matrix4Xd& x, const SystemPattern& pattern,
+                                   TangentValues& values) const {
   // From edges to nodes: e_k = x_k - x_0.
   Eigen::Matrix<double, 9, 12> to_edges;
   to_edges << -Eigen::Matrix3d::Identity().replicate<3, 1>(), Hessian::Identity();
-  const Eigen::Matrix<double, 12, 1> nodal_force = to_edges.transpose() * f;
-  const Eigen::Matrix<double, 12, 12> tangent = to_edges.transpose() * h * to_edges;
-  int dofs[12];
-  for (int k = 0; k < 12; ++k) {
-    dofs[k] = pattern.dof_of_component()[3 * element.nodes[kCorners[corner][k / 3]] + k % 3];
-  }
-  for (int i = 0; i < 12; ++i) {
-    if (dofs[i] < 0) continue;
-    force[dofs[i]] += nodal_force[i];
-    for (int j = 0; j < 12; ++j) {
-      if (dofs[j] >= 0 && dofs[j] <= dofs[i]) values[pattern.find(dofs[i], dofs[j])] += tangent(i, j);
+  for_each_squeezed_corner(hexahedron, x, [&](const Corner& corner) {
+    const double scale = corner.inverse_rest;
+    const BarrierValue barrier = evaluate(scale * corner.edges.determinant());
+    const Gradient g = scale * determinant_gradient(corner.edges);
+    const Hessian h = corner.modulus * positive_part(barrier.curvature * g * g.transpose() +
+                                                     barrier.slope * scale * determinant_hessian(corner.edges));
+    const Eigen::Matrix<double, 12, 12> tangent = to_edges.transpose() * h * to_edges;
+    int dofs[12];
+    for (int k = 0; k < 12; ++k) {
+      dofs[k] = pattern.dof_of_component()[3 * mesh_->hexahedra[hexahedron][kCorners[corner.index][k / 3]] + k % 3];
     }
-  }
-  return element.modulus * barrier.b;
+    for (int i = 0; i < 12; ++i) {
+      for (int j = 0; j < 12; ++j) {
+        const bool is_lower = dofs[j] >= 0 && dofs[j] <= dofs[i];
+        if (is_lower) values.add_geometric(pattern.find(dofs[i], dofs[j]), tangent(i, j));
+      }
+    }
+  });
 }
 
 }  // namespace lipofill::solid

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <vector>
 
 #include "core/solid/hex_mesh.h"
+#include "core/solid/hex_shape.h"
 #include "core/solid/material.h"
+#include "core/solid/node_blocks.h"
 #include "core/solid/system_pattern.h"
 
 namespace lipofill::solid {
@@ -29,23 +30,31 @@ class InversionBarrier {
   static constexpr double kThreshold = 0.3;    ///< J_0
   static constexpr double kLeastShare = 0.05;  ///< of j
 
+  /// The mesh must outlive the barrier.
   InversionBarrier(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials);
 
-  /// Adds the tangent at the positions `x` to values in the order of `pattern`, the force to the n_dofs first entries
-  /// of `force`; returns the energy [J]. Allocates nothing.
-  double add(const Eigen::Matrix3Xd& x, const SystemPattern& pattern, Eigen::VectorXd& values,
-             Eigen::VectorXd& force) const;
+  /// Largest det[e_1 e_2 e_3] of a hexahedron's corners [m3]: where no corner has less than kThreshold times that of
+  /// the rest shape, there is no barrier.
+  static double find_largest_corner(const HexNodes& nodes);
+
+  /// Adds the force of a hexahedron at the positions `x` (4, n_nodes; the last row has no meaning) to `force` (4,
+  /// n_nodes); returns the energy [J]. Allocates nothing, as does add_tangent.
+  double add_force(int hexahedron, const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force) const;
+  void add_tangent(int hexahedron, const Eigen::Matrix4Xd& x, const SystemPattern& pattern,
+                   TangentValues& values) const;
 
  private:
-  struct Element {
-    std::array<int, 8> nodes;
-    double modulus;                      ///< E V_e/8 [J]
-    std::array<double, 8> inverse_rest;  ///< 1/(J_0 det[e_1 e_2 e_3]) at rest [1/m3]
+  struct Corner {
+    int index;
+    Eigen::Matrix3d edges;
+    double inverse_rest;  ///< 1/(J_0 det[e_1 e_2 e_3]) at rest [1/m3]
+    double modulus;       ///< E V_e/8 [J]
   };
-  double add_corner(const Element& element, int corner, const Eigen::Matrix3d& edges, const SystemPattern& pattern,
-                    Eigen::VectorXd& values, Eigen::VectorXd& force) const;
+  template <typename Visit>
+  void for_each_squeezed_corner(int hexahedron, const Eigen::Matrix4Xd& x, Visit visit) const;
 
-  std::vector<Element> elements_;
+  const HexMesh* mesh_;
+  std::vector<double> youngs_modulus_;  ///< of each material [Pa]
 };
 
 }  // namespace lipofill::solid

@@ -19,44 +19,28 @@ Prestress::Prestress(const HexMesh& mesh, const std::vector<ElasticMaterial>& ma
     element.gradient = (derivatives * J.inverse()).transpose();
     const Eigen::Vector3d n = J.col(0).cross(J.col(1)).normalized();
     element.stress = 8.0 * J.determinant() * tension * (Eigen::Matrix3d::Identity() - n * n.transpose());
-    for (int k = 0; k < 24; ++k)
-      element.dof[k / 3][k % 3] = pattern.dof_of_component()[3 * element.nodes[k / 3] + k % 3];
     elements_.push_back(element);
   }
   if (elements_.empty()) return;
-  stiffness_.setZero(pattern.matrix().nonZeros());
+  stiffness_.setZero(pattern.n_blocks() + 1);
   for (const Element& element : elements_) {
     const Eigen::Matrix<double, 8, 8> k = element.gradient.transpose() * element.stress * element.gradient;
     for (int a = 0; a < 8; ++a) {
-      for (int b = 0; b <= a; ++b) {
-        for (int c = 0; c < 3; ++c) {
-          if (element.dof[a][c] < 0 || element.dof[b][c] < 0) continue;
-          stiffness_[pattern.find(element.dof[a][c], element.dof[b][c])] += k(a, b);
-        }
-      }
+      for (int b = 0; b <= a; ++b) stiffness_[pattern.find_block(element.nodes[a], element.nodes[b])] += k(a, b);
     }
   }
 }
 
-void Prestress::add_stiffness(Eigen::VectorXd& values) const {
-  if (stiffness_.size() > 0) values.head(stiffness_.size()) += stiffness_;
-}
-
-double Prestress::add_force(const Eigen::Matrix3Xd& x, Eigen::VectorXd& force) const {
+double Prestress::add_force(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force) const {
   double energy = 0.0;
   for (const Element& element : elements_) {
     Eigen::Matrix3d gradient = Eigen::Matrix3d::Zero();
     for (int a = 0; a < 8; ++a) {
-      gradient += (x.col(element.nodes[a]) - element.rest.col(a)) * element.gradient.col(a).transpose();
+      gradient += (x.col(element.nodes[a]).head<3>() - element.rest.col(a)) * element.gradient.col(a).transpose();
     }
     const Eigen::Matrix3d stress = gradient * element.stress;
     energy += 0.5 * stress.cwiseProduct(gradient).sum();
-    for (int a = 0; a < 8; ++a) {
-      const Eigen::Vector3d f = stress * element.gradient.col(a);
-      for (int c = 0; c < 3; ++c) {
-        if (element.dof[a][c] >= 0) force[element.dof[a][c]] += f[c];
-      }
-    }
+    for (int a = 0; a < 8; ++a) force.col(element.nodes[a]).head<3>() += stress * element.gradient.col(a);
   }
   return energy;
 }

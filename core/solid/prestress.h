@@ -31,10 +31,11 @@ class Prestress {
  public:
   Prestress(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials, const SystemPattern& pattern);
 
-  /// Adds K_pre (constant) to values in the pattern's order.
-  void add_stiffness(Eigen::VectorXd& values) const;
-  /// Adds K_pre (x - X) to the n_dofs first entries of `force`; returns the energy [J]. Allocates nothing.
-  double add_force(const Eigen::Matrix3Xd& x, Eigen::VectorXd& force) const;
+  /// K_pre: the number of I in each block of the pattern [N/m]; empty without tension.
+  const Eigen::VectorXd& stiffness() const { return stiffness_; }
+  /// Adds K_pre (x - X) to `force`; returns the energy [J]. Both have four numbers a node, the last of no meaning.
+  /// Allocates nothing.
+  double add_force(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force) const;
 
  private:
   struct Element {
@@ -42,11 +43,10 @@ class Prestress {
     Eigen::Matrix<double, 3, 8> rest;      ///< [m]
     Eigen::Matrix<double, 3, 8> gradient;  ///< of the shape functions at the centre, at rest [1/m]
     Eigen::Matrix3d stress;                ///< V_e S0 [N m]
-    std::array<std::array<int, 3>, 8> dof;
   };
 
   std::vector<Element> elements_;  ///< those under tension
-  Eigen::VectorXd stiffness_;      ///< K_pre in the pattern; empty without tension [N/m]
+  Eigen::VectorXd stiffness_;
 };
 
 }  // namespace lipofill::solid

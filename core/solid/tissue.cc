@@ -1,132 +1,124 @@
 #include "core/solid/tissue.h"
 
-#include <Eigen/LU>
 #include <limits>
 #include <utility>
 
-#include "core/solid/element_assembler.h"
-#include "core/solid/hex_shape.h"
 #include "core/solid/tissue_checks.h"
 
 namespace lipofill::solid {
 
-absl::StatusOr<Tissue> Tissue::create(HexMesh mesh, std::vector<ElasticMaterial> materials, NodeSupports supports,
-                                      RayleighDamping damping, std::vector<WallSpring> springs) {
-  if (supports.fixed.empty()) supports.fixed.resize(mesh.n_nodes(), {false, false, false});
-  if (supports.spring.empty()) supports.spring.resize(mesh.n_nodes(), 0.0);
-  absl::Status status = check_tissue(mesh, materials, supports, damping, springs);
-  if (!status.ok()) return status;
-  Tissue tissue(std::move(mesh), materials, std::move(supports), damping, springs);
-  tissue.assemble(tissue.mesh_.rest_positions, std::numeric_limits<double>::infinity());
+absl::StatusOr<Tissue> Tissue::create(HexMesh mesh, const std::vector<ElasticMaterial>& materials,
+                                      NodeSupports supports, RayleighDamping damping,
+                                      const std::vector<WallSpring>& springs) {
+  auto structure = TissueStructure::create(std::move(mesh), materials, std::move(supports), springs);
+  if (!structure.ok()) return structure.status();
+  return create(*std::move(structure), damping);
+}
+
+absl::StatusOr<Tissue> Tissue::create(std::shared_ptr<const TissueStructure> structure, RayleighDamping damping) {
+  if (absl::Status status = check_damping(damping); !status.ok()) return status;
+  Tissue tissue(std::move(structure), damping);
+  tissue.assemble(tissue.mesh().rest_positions, std::numeric_limits<double>::infinity());
   return tissue;
 }
 
-Tissue::Tissue(HexMesh mesh, const std::vector<ElasticMaterial>& materials, NodeSupports supports,
-               RayleighDamping damping, const std::vector<WallSpring>& springs)
-    : mesh_(std::move(mesh)),
-      supports_(std::move(supports)),
+Tissue::Tissue(std::shared_ptr<const TissueStructure> structure, RayleighDamping damping)
+    : structure_(std::move(structure)),
       damping_(damping),
-      pattern_(mesh_.n_nodes(), mesh_.hexahedra, supports_.fixed, collect_coupled_nodes(springs)),
-      elements_(std::make_unique<const ElementAssembler>(mesh_, materials, pattern_)),
-      geometric_stiffness_(mesh_, materials, pattern_),
-      prestress_(mesh_, materials, pattern_),
-      barrier_(mesh_, materials),
-      springs_(springs, mesh_.rest_positions, pattern_),
-      geometric_values_(pattern_.matrix().nonZeros()),
-      stiffness_values_(pattern_.matrix().nonZeros() + 1),
-      ignored_values_(pattern_.matrix().nonZeros() + 1),
-      padded_force_(pattern_.n_dofs() + 1),
-      internal_force_(pattern_.n_dofs()),
-      system_matrix_(pattern_.matrix()) {
-  lump_mass(materials);
-  prepare_diagonal();
-}
-
-Tissue::Tissue(Tissue&& other) noexcept = default;
-Tissue& Tissue::operator=(Tissue&& other) noexcept = default;
-Tissue::~Tissue() = default;
-
-void Tissue::lump_mass(const std::vector<ElasticMaterial>& materials) {
-  mass_ = Eigen::VectorXd::Zero(mesh_.n_nodes());
-  for (int e = 0; e < mesh_.n_hexahedra(); ++e) {
-    const HexNodes nodes = mesh_.gather(e, mesh_.rest_positions);
-    const double density = materials[mesh_.material[e]].density;
-    for (const LocalPoint& point : hex_gauss_points()) {
-      const double point_mass = density * compute_jacobian(nodes, point).determinant();
-      const Eigen::Matrix<double, 8, 1> N = compute_shape(point);
-      for (int a = 0; a < 8; ++a) mass_[mesh_.hexahedra[e][a]] += point_mass * N[a];
-    }
-  }
-}
-
-void Tissue::prepare_diagonal() {
-  dof_mass_.resize(n_dofs());
-  diagonal_.resize(n_dofs());
-  for (int component = 0; component < 3 * mesh_.n_nodes(); ++component) {
-    const int dof = dof_of_component()[component];
-    if (dof < 0) continue;
-    dof_mass_[dof] = mass_[component / 3];
-    diagonal_[dof] = pattern_.find(dof, dof);
-  }
+      springs_(structure_->springs().size()),
+      positions_(Eigen::Matrix4Xd::Zero(4, mesh().n_nodes())),
+      force_(4, mesh().n_nodes()),
+      blocks_(structure_->pattern()),
+      stiffness_values_(structure_->pattern().n_values()),
+      system_matrix_(structure_->pattern().make_matrix()),
+      internal_force_(n_dofs()) {
+  squeezed_.reserve(mesh().n_hexahedra());
 }
 
 void Tissue::assemble(const Eigen::Matrix3Xd& x, double dt) {
-  stiffness_values_.setZero();
-  geometric_values_.setZero();
-  padded_force_.setZero();
-  const ElementTotals totals = elements_->add(x, stiffness_values_, padded_force_);
-  geometric_stiffness_.add(x, geometric_values_);
-  prestress_.add_stiffness(geometric_values_);
-  add_all_but_elements(x, totals, stiffness_values_, geometric_values_);
+  begin(x);
+  blocks_.set_zero();
+  totals_ = structure_->elements().add(positions_, force_, squeezed_, blocks_);
+  finish_force();
   compose_system_matrix(dt);
 }
 
 void Tissue::compute_force(const Eigen::Matrix3Xd& x) {
-  ignored_values_.setZero();
-  padded_force_.setZero();
-  const ElementTotals totals = elements_->add_force(x, padded_force_);
-  add_all_but_elements(x, totals, ignored_values_, ignored_values_);
+  begin(x);
+  totals_ = structure_->elements().add_forces(positions_, force_, squeezed_);
+  finish_force();
 }
 
-void Tissue::add_all_but_elements(const Eigen::Matrix3Xd& x, const ElementTotals& of_elements,
-                                  Eigen::VectorXd& stiffness, Eigen::VectorXd& geometric) {
-  elastic_energy_ = of_elements.elastic_energy;
-  min_volume_ratio_ = of_elements.min_volume_ratio;
-  elastic_energy_ += prestress_.add_force(x, padded_force_);
-  elastic_energy_ += barrier_.add(x, pattern_, geometric, padded_force_);
-  elastic_energy_ += springs_.add(x, stiffness, geometric, padded_force_);
-  add_supports(x, stiffness);
-  internal_force_ = padded_force_.head(n_dofs());
+void Tissue::begin(const Eigen::Matrix3Xd& x) {
+  positions_.topRows<3>() = x;
+  force_.setZero();
+  squeezed_.clear();
 }
 
-void Tissue::add_supports(const Eigen::Matrix3Xd& x, Eigen::VectorXd& stiffness_values) {
-  for (int a = 0; a < mesh_.n_nodes(); ++a) {
-    const double stiffness = supports_.spring[a];
-    if (stiffness == 0.0) continue;
+/// All but the hexahedra, and from nodes to degrees of freedom.
+void Tissue::finish_force() {
+  elastic_energy_ = totals_.elastic_energy;
+  elastic_energy_ += structure_->prestress().add_force(positions_, force_);
+  for (const int hexahedron : squeezed_) {
+    elastic_energy_ += structure_->barrier().add_force(hexahedron, positions_, force_);
+  }
+  elastic_energy_ += structure_->springs().add_force(positions_, springs_, force_);
+  add_supports();
+  const int* dof = dof_of_component().data();
+  double* const to = internal_force_.data();
+  for (Eigen::Index node = 0; node < force_.cols(); ++node) {
+    for (int c = 0; c < 3; ++c, ++dof) {
+      if (*dof >= 0) to[*dof] = force_.data()[4 * node + c];
+    }
+  }
+}
+
+void Tissue::add_supports() {
+  for (const TissueStructure::SprungNode& sprung : structure_->sprung_nodes()) {
     for (int c = 0; c < 3; ++c) {
-      const int dof = dof_of_component()[3 * a + c];
-      if (dof < 0) continue;
-      const double stretch = x(c, a) - mesh_.rest_positions(c, a);
-      padded_force_[dof] += stiffness * stretch;
-      stiffness_values[diagonal_[dof]] += stiffness;
-      elastic_energy_ += 0.5 * stiffness * stretch * stretch;
+      if (sprung.diagonal[c] < 0) continue;
+      const double stretch = positions_(c, sprung.node) - mesh().rest_positions(c, sprung.node);
+      force_(c, sprung.node) += sprung.stiffness * stretch;
+      elastic_energy_ += 0.5 * sprung.stiffness * stretch * stretch;
     }
   }
 }
 
 void Tissue::compose_system_matrix(double dt) {
-  const double stiffness_factor = 1.0 + damping_.beta / dt;
+  TangentValues values{stiffness_values_.data(), system_matrix_.valuePtr(), 1.0 + damping_.beta / dt};
+  const SystemPattern& pattern = structure_->pattern();
+  blocks_.write(pattern, structure_->prestress().stiffness(), values.factor, values.stiffness, values.system);
+  for (const int hexahedron : squeezed_) structure_->barrier().add_tangent(hexahedron, positions_, pattern, values);
+  structure_->springs().add_tangent(positions_, springs_, values);
+  for (const TissueStructure::SprungNode& sprung : structure_->sprung_nodes()) {
+    for (const int place : sprung.diagonal) {
+      if (place >= 0) values.add_stiffness(place, sprung.stiffness);
+    }
+  }
   const double mass_factor = 1.0 / (dt * dt) + damping_.alpha / dt;
-  Eigen::Map<Eigen::VectorXd> values(system_matrix_.valuePtr(), system_matrix_.nonZeros());
-  values = stiffness_factor * stiffness_values_.head(system_matrix_.nonZeros()) + geometric_values_;
-  for (int dof = 0; dof < n_dofs(); ++dof) values[diagonal_[dof]] += mass_factor * dof_mass_[dof];
+  const double* mass = structure_->dof_mass().data();
+  for (const int place : structure_->diagonal()) values.add_geometric(place, mass_factor * *mass++);
+}
+
+void Tissue::stiffness_times(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
+  product.setZero(n_dofs());
+  const int* start = system_matrix_.outerIndexPtr();
+  const int* row = system_matrix_.innerIndexPtr();
+  const double* value = stiffness_values_.data();
+  for (int column = 0; column < n_dofs(); ++column) {
+    const int last = start[column + 1];
+    product[column] += value[start[column]] * v[column];
+    for (int k = start[column] + 1; k < last; ++k) {
+      product[row[k]] += value[k] * v[column];
+      product[column] += value[k] * v[row[k]];
+    }
+  }
 }
 
 Eigen::VectorXd Tissue::stiffness_times(const Eigen::VectorXd& v) const {
-  const Eigen::Map<const Eigen::SparseMatrix<double>> K(n_dofs(), n_dofs(), system_matrix_.nonZeros(),
-                                                        system_matrix_.outerIndexPtr(), system_matrix_.innerIndexPtr(),
-                                                        stiffness_values_.data());
-  return K.selfadjointView<Eigen::Lower>() * v;
+  Eigen::VectorXd product;
+  stiffness_times(v, product);
+  return product;
 }
 
 }  // namespace lipofill::solid

@@ -2,29 +2,17 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
-#include <array>
 #include <memory>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "core/solid/geometric_stiffness.h"
 #include "core/solid/hex_mesh.h"
-#include "core/solid/inversion_barrier.h"
 #include "core/solid/material.h"
-#include "core/solid/prestress.h"
-#include "core/solid/system_pattern.h"
+#include "core/solid/node_blocks.h"
+#include "core/solid/tissue_structure.h"
 #include "core/solid/wall_springs.h"
 
 namespace lipofill::solid {
-
-class ElementAssembler;
-struct ElementTotals;
-
-/// How the nodes are held. Nodes may be in several entries; fixed wins over springs.
-struct NodeSupports {
-  std::vector<std::array<bool, 3>> fixed;  ///< a triple a node: x, y, z held at rest; empty: none held
-  std::vector<double> spring;              ///< isotropic spring to the rest position, a value a node [N/m]; empty: none
-};
 
 /// Rayleigh damping D = alpha M + beta K.
 struct RayleighDamping {
@@ -44,47 +32,46 @@ struct RayleighDamping {
 /// consistent load. K_e is the solid-shell (solid_shell.h), in stacked layers EAS-9 (incompatible_modes.h). Degrees of
 /// freedom are the components of nodes that are not fixed, numbered node by node.
 ///
-/// Deterministic: everything depends on the last assemble alone, summed in the order of the mesh.
-/// Checked by tests/unit/solid/ and tests/verification/solid/ (patch test, rigid rotation, clamped plate and others).
+/// What never changes is a TissueStructure, which tissues share; a tissue itself holds values. Deterministic:
+/// everything depends on the last assemble alone, summed in an order that the mesh decides. Checked by
+/// tests/unit/solid/ and tests/verification/solid/ (patch test, rigid rotation, clamped plate and others).
 class Tissue {
  public:
-  /// INVALID_ARGUMENT with a violation each for sizes that disagree, a node index out of range or a node in no
-  /// hexahedron, a position that is not finite, a material, spring or damping out of bounds, a hexahedron with a
-  /// non-positive Jacobian at a corner or Gauss point, naming it.
-  static absl::StatusOr<Tissue> create(HexMesh mesh, std::vector<ElasticMaterial> materials, NodeSupports supports,
-                                       RayleighDamping damping, std::vector<WallSpring> springs = {});
+  /// INVALID_ARGUMENT as TissueStructure::create, and for damping out of bounds.
+  static absl::StatusOr<Tissue> create(HexMesh mesh, const std::vector<ElasticMaterial>& materials,
+                                       NodeSupports supports, RayleighDamping damping,
+                                       const std::vector<WallSpring>& springs = {});
+  static absl::StatusOr<Tissue> create(std::shared_ptr<const TissueStructure> structure, RayleighDamping damping);
 
-  Tissue(Tissue&& other) noexcept;
-  Tissue& operator=(Tissue&& other) noexcept;
-  ~Tissue();
-
-  const HexMesh& mesh() const { return mesh_; }
-  int n_dofs() const { return pattern_.n_dofs(); }
+  const std::shared_ptr<const TissueStructure>& structure() const { return structure_; }
+  const HexMesh& mesh() const { return structure_->mesh(); }
+  int n_dofs() const { return structure_->pattern().n_dofs(); }
   /// Degree of freedom of component c of node a at 3 a + c; -1 where fixed.
-  const std::vector<int>& dof_of_component() const { return pattern_.dof_of_component(); }
+  const std::vector<int>& dof_of_component() const { return structure_->pattern().dof_of_component(); }
   /// Lumped mass, a value a node [kg].
-  const Eigen::VectorXd& mass() const { return mass_; }
+  const Eigen::VectorXd& mass() const { return structure_->mass(); }
 
   /// Brings rotations, internal force and stiffness to the positions `x` (3, n_nodes) [m]. `dt` > 0 [s]; infinity gives
   /// S = K + K_G. Fixed components of `x` count where they are, so a support may be moved. Allocates nothing.
   void assemble(const Eigen::Matrix3Xd& x, double dt);
 
-  /// Brings internal force, energy, volume ratio and springs to the positions `x`, the same bits as assemble, at less
-  /// than half its cost; stiffness and system matrix stay those of the last assemble. Allocates nothing.
+  /// Brings internal force, energy, volume ratio and springs to the positions `x`, the same bits as assemble, at a
+  /// quarter of its cost; stiffness and system matrix stay those of the last assemble. Allocates nothing.
   void compute_force(const Eigen::Matrix3Xd& x);
 
-  int n_springs() const { return springs_.size(); }
+  int n_springs() const { return static_cast<int>(springs_.size()); }
   /// A broken spring carries nothing from the next assemble on. All are intact at first.
-  void set_spring_intact(int spring, bool intact) { springs_.set_intact(spring, intact); }
-  bool spring_intact(int spring) const { return springs_.intact(spring); }
+  void set_spring_intact(int spring, bool intact) { springs_[spring].intact = intact; }
+  bool spring_intact(int spring) const { return springs_[spring].intact; }
   /// Of a spring at the last assemble: tension [N], 0 when slack or broken, and distance between its ends [m].
-  double spring_tension(int spring) const { return springs_.tension(spring); }
-  double spring_length(int spring) const { return springs_.length(spring); }
+  double spring_tension(int spring) const { return springs_[spring].tension; }
+  double spring_length(int spring) const { return springs_[spring].length; }
 
   /// f_int of the last assemble or compute_force, springs included, a value a degree of freedom [N].
   const Eigen::VectorXd& internal_force() const { return internal_force_; }
 
   /// K of the last assemble times a vector of degrees of freedom [N]; for damping forces.
+  void stiffness_times(const Eigen::VectorXd& v, Eigen::VectorXd& product) const;
   Eigen::VectorXd stiffness_times(const Eigen::VectorXd& v) const;
 
   /// S of the last assemble: its lower triangle, in a pattern that never changes (columns ascending, rows ascending in
@@ -99,40 +86,33 @@ class Tissue {
 
   /// Smallest det(F) over element centres at the last assemble; not positive: the element is turned inside out. Minus
   /// infinity where positions are not finite.
-  double min_volume_ratio() const { return min_volume_ratio_; }
+  double min_volume_ratio() const { return totals_.min_volume_ratio; }
+
+  /// Whether the scaled Jacobian (hex_quality.h) of a hexahedron is not positive at the last assemble or compute_force,
+  /// which that finds on its way.
+  bool is_folded() const { return totals_.is_folded; }
 
   const RayleighDamping& damping() const { return damping_; }
 
  private:
-  Tissue(HexMesh mesh, const std::vector<ElasticMaterial>& materials, NodeSupports supports, RayleighDamping damping,
-         const std::vector<WallSpring>& springs);
-  void lump_mass(const std::vector<ElasticMaterial>& materials);
-  void prepare_diagonal();
-  void add_all_but_elements(const Eigen::Matrix3Xd& x, const ElementTotals& of_elements, Eigen::VectorXd& stiffness,
-                            Eigen::VectorXd& geometric);
-  void add_supports(const Eigen::Matrix3Xd& x, Eigen::VectorXd& stiffness_values);
+  Tissue(std::shared_ptr<const TissueStructure> structure, RayleighDamping damping);
+  void begin(const Eigen::Matrix3Xd& x);
+  void finish_force();
+  void add_supports();
   void compose_system_matrix(double dt);
 
-  HexMesh mesh_;
-  NodeSupports supports_;
+  std::shared_ptr<const TissueStructure> structure_;
   RayleighDamping damping_;
-  SystemPattern pattern_;
-  std::unique_ptr<const ElementAssembler> elements_;
-  Eigen::VectorXd mass_;
-  Eigen::VectorXd dof_mass_;   ///< mass of the node of each degree of freedom [kg]
-  std::vector<int> diagonal_;  ///< where the diagonal value of each degree of freedom is
-  GeometricStiffness geometric_stiffness_;
-  Prestress prestress_;
-  InversionBarrier barrier_;
-  WallSprings springs_;
-  Eigen::VectorXd geometric_values_;  ///< K_G in the pattern [N/m]
-  Eigen::VectorXd stiffness_values_;  ///< K in the pattern, then one place for what is not kept [N/m]
-  Eigen::VectorXd ignored_values_;    ///< where compute_force lets stiffness go
-  Eigen::VectorXd padded_force_;      ///< f_int, then one place for what is not kept [N]
-  Eigen::VectorXd internal_force_;
+  std::vector<WallSpringState> springs_;
+  Eigen::Matrix4Xd positions_;        ///< of the last assemble or compute_force; the last row is 0
+  Eigen::Matrix4Xd force_;            ///< f_int, a column a node; the last row has no meaning [N]
+  std::vector<int> squeezed_;         ///< hexahedra that the barrier may act on
+  ElementTotals totals_;              ///< of the hexahedra
+  NodeBlocks blocks_;                 ///< K and K_G of the hexahedra [N/m]
+  Eigen::VectorXd stiffness_values_;  ///< K in the pattern [N/m]
   Eigen::SparseMatrix<double> system_matrix_;
+  Eigen::VectorXd internal_force_;
   double elastic_energy_ = 0.0;
-  double min_volume_ratio_ = 1.0;
 };
 
 }  // namespace lipofill::solid

@@ -131,14 +131,11 @@ void check_damping(const char* field, double value, const char* unit, FieldViola
 }  // namespace
 
 absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
-                          const NodeSupports& supports, const RayleighDamping& damping,
-                          const std::vector<WallSpring>& springs) {
+                          const NodeSupports& supports, const std::vector<WallSpring>& springs) {
   FieldViolations violations;
   for (size_t m = 0; m < materials.size(); ++m) {
     check_material(absl::StrCat("materials[", m, "]"), materials[m], violations);
   }
-  check_damping("damping.alpha", damping.alpha, "1/s", violations);
-  check_damping("damping.beta", damping.beta, "s", violations);
   check_sizes(mesh, supports, violations);
   check_springs(supports, violations);
   check_wall_springs(springs, mesh.n_nodes(), violations);
@@ -147,6 +144,13 @@ absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial
   if (!violations.empty()) return violations.to_status();
   check_nodes(mesh, supports, violations);
   if (violations.empty()) check_shapes(mesh, violations);
+  return violations.to_status();
+}
+
+absl::Status check_damping(const RayleighDamping& damping) {
+  FieldViolations violations;
+  check_damping("damping.alpha", damping.alpha, "1/s", violations);
+  check_damping("damping.beta", damping.beta, "s", violations);
   return violations.to_status();
 }
 

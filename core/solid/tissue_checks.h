@@ -6,13 +6,15 @@
 #include "core/solid/hex_mesh.h"
 #include "core/solid/material.h"
 #include "core/solid/tissue.h"
+#include "core/solid/tissue_structure.h"
 
 namespace lipofill::solid {
 
-/// What Tissue::create refuses: INVALID_ARGUMENT with a violation for everything wrong, at most a few of each kind.
-/// Checked by tests/unit/solid/tissue_checks_test.cc.
+/// What TissueStructure::create refuses: INVALID_ARGUMENT with a violation for everything wrong, at most a few of each
+/// kind. Checked by tests/unit/solid/tissue_checks_test.cc.
 absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
-                          const NodeSupports& supports, const RayleighDamping& damping,
-                          const std::vector<WallSpring>& springs = {});
+                          const NodeSupports& supports, const std::vector<WallSpring>& springs = {});
+
+absl::Status check_damping(const RayleighDamping& damping);
 
 }  // namespace lipofill::solid

@@ -51,12 +51,10 @@ WallSprings::WallSprings(const std::vector<WallSpring>& springs, const Eigen::Ma
 
 void WallSprings::add_terms(const WallSpring& spring, const SystemPattern& pattern) {
   Spring added{};
-  added.intact = true;
   added.first_term = static_cast<int>(terms_.size());
   added.first_block = static_cast<int>(blocks_.size());
   for (const auto& [node, coefficient] : collect_coefficients(spring)) {
-    const std::vector<int>& dofs = pattern.dof_of_component();
-    terms_.push_back({node, coefficient, {dofs[3 * node], dofs[3 * node + 1], dofs[3 * node + 2]}});
+    terms_.push_back({node, coefficient});
     for (size_t b = added.first_term; b < terms_.size(); ++b) add_block(terms_.back(), terms_[b], pattern);
   }
   added.n_terms = static_cast<int>(terms_.size()) - added.first_term;
@@ -64,61 +62,76 @@ void WallSprings::add_terms(const WallSpring& spring, const SystemPattern& patte
 }
 
 void WallSprings::add_block(const Term& a, const Term& b, const SystemPattern& pattern) {
+  const std::vector<int>& dofs = pattern.dof_of_component();
   Block block;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      const bool kept = a.dof[i] >= 0 && b.dof[j] >= 0 && (a.node != b.node || i >= j);
-      block[3 * i + j] = kept ? pattern.find(a.dof[i], b.dof[j]) : -1;
+      const int row = dofs[3 * a.node + i];
+      const int column = dofs[3 * b.node + j];
+      const bool kept = row >= 0 && column >= 0 && (a.node != b.node || i >= j);
+      block[3 * i + j] = kept ? pattern.find(row, column) : -1;
     }
   }
   blocks_.push_back(block);
 }
 
-Eigen::Vector3d WallSprings::separation(const Spring& spring, const Eigen::Matrix3Xd& x) const {
+template <typename Positions>
+Eigen::Vector3d WallSprings::separation(const Spring& spring, const Positions& x) const {
   Eigen::Vector3d d = Eigen::Vector3d::Zero();
   for (int a = spring.first_term; a < spring.first_term + spring.n_terms; ++a) {
-    d += terms_[a].coefficient * x.col(terms_[a].node);
+    d += terms_[a].coefficient * x.col(terms_[a].node).template head<3>();
   }
   return d;
 }
 
-double WallSprings::add(const Eigen::Matrix3Xd& x, Eigen::VectorXd& stiffness, Eigen::VectorXd& geometric,
-                        Eigen::VectorXd& force) {
+double WallSprings::add_force(const Eigen::Matrix4Xd& x, std::vector<WallSpringState>& states,
+                              Eigen::Matrix4Xd& force) const {
   double energy = 0.0;
-  for (Spring& spring : springs_) {
+  for (size_t s = 0; s < springs_.size(); ++s) {
+    const Spring& spring = springs_[s];
+    WallSpringState& state = states[s];
     const Eigen::Vector3d d = separation(spring, x);
-    spring.length = d.norm();
-    const double stretch = spring.intact ? std::max(0.0, spring.length - spring.taut_length) : 0.0;
-    spring.tension = spring.stiffness * stretch;
-    energy += 0.5 * spring.tension * stretch;
-    if (!spring.intact || spring.length < kTautShare * spring.taut_length) continue;
-    if (spring.taut_length == 0.0) {
-      scatter(spring, spring.stiffness * Eigen::Matrix3d::Identity(), stiffness);
-    } else {
-      const Eigen::Vector3d n = d / spring.length;
-      const Eigen::Matrix3d along = n * n.transpose();
-      scatter(spring, spring.stiffness * along, stiffness);
-      scatter(spring, spring.tension / spring.length * (Eigen::Matrix3d::Identity() - along), geometric);
-    }
-    if (spring.tension == 0.0) continue;
+    state.length = d.norm();
+    const double stretch = state.intact ? std::max(0.0, state.length - spring.taut_length) : 0.0;
+    state.tension = spring.stiffness * stretch;
+    energy += 0.5 * state.tension * stretch;
+    if (state.tension == 0.0) continue;
+    const Eigen::Vector3d pull = state.tension / state.length * d;
     for (int a = spring.first_term; a < spring.first_term + spring.n_terms; ++a) {
-      for (int c = 0; c < 3; ++c) {
-        const int dof = terms_[a].dof[c];
-        if (dof >= 0) force[dof] += terms_[a].coefficient * spring.tension * d[c] / spring.length;
-      }
+      force.col(terms_[a].node).head<3>() += terms_[a].coefficient * pull;
     }
   }
   return energy;
 }
 
-void WallSprings::scatter(const Spring& spring, const Eigen::Matrix3d& tangent, Eigen::VectorXd& values) const {
+void WallSprings::add_tangent(const Eigen::Matrix4Xd& x, const std::vector<WallSpringState>& states,
+                              TangentValues& values) const {
+  const auto add_stiffness = [&values](int place, double value) { values.add_stiffness(place, value); };
+  const auto add_geometric = [&values](int place, double value) { values.add_geometric(place, value); };
+  for (size_t s = 0; s < springs_.size(); ++s) {
+    const Spring& spring = springs_[s];
+    const WallSpringState& state = states[s];
+    if (!state.intact || state.length < kTautShare * spring.taut_length) continue;
+    if (spring.taut_length == 0.0) {
+      scatter(spring, spring.stiffness * Eigen::Matrix3d::Identity(), add_stiffness);
+      continue;
+    }
+    const Eigen::Vector3d n = separation(spring, x) / state.length;
+    const Eigen::Matrix3d along = n * n.transpose();
+    scatter(spring, spring.stiffness * along, add_stiffness);
+    scatter(spring, state.tension / state.length * (Eigen::Matrix3d::Identity() - along), add_geometric);
+  }
+}
+
+template <typename Add>
+void WallSprings::scatter(const Spring& spring, const Eigen::Matrix3d& tangent, Add add) const {
   int block = spring.first_block;
   for (int a = spring.first_term; a < spring.first_term + spring.n_terms; ++a) {
     for (int b = spring.first_term; b <= a; ++b, ++block) {
       const double factor = terms_[a].coefficient * terms_[b].coefficient;
       for (int k = 0; k < 9; ++k) {
         const std::int32_t target = blocks_[block][k];
-        if (target >= 0) values[target] += factor * tangent(k / 3, k % 3);
+        if (target >= 0) add(target, factor * tangent(k / 3, k % 3));
       }
     }
   }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/solid/node_blocks.h"
 #include "core/solid/system_pattern.h"
 
 namespace lipofill::solid {
@@ -22,6 +23,13 @@ struct WallSpring {
 /// Groups of nodes that springs couple with one another: those of each spring whose weight is not zero.
 std::vector<std::vector<int>> collect_coupled_nodes(const std::vector<WallSpring>& springs);
 
+/// What changes of a spring.
+struct WallSpringState {
+  bool intact = true;
+  double tension = 0.0;  ///< [N]
+  double length = 0.0;   ///< distance between the two points [m]
+};
+
 /// Springs that pull but never push, from d = x_outer - x_inner, with L* = |d| at rest + slack:
 ///
 ///     f = k (|d| - L*)_+ n,   n = d/|d|              on the inner point; -f on the outer point  [N]
@@ -31,22 +39,20 @@ std::vector<std::vector<int>> collect_coupled_nodes(const std::vector<WallSpring
 /// Where L* is zero (walls that touch, no slack) this is the linear spring f = k d with tangent k I, which a rest
 /// direction need not exist for; rest lengths below a billionth of the tissue's extent count as zero. A broken spring
 /// carries nothing. The part along n belongs to K (Rayleigh damping acts on it), the part across to K_G (tissue.h).
-/// Checked by tests/unit/solid/wall_springs_test.cc.
+/// Constant and shared; what changes of a spring is a WallSpringState. Checked by
+/// tests/unit/solid/wall_springs_test.cc.
 class WallSprings {
  public:
   /// The springs have been checked (tissue_checks.h); their nodes are coupled in `pattern`.
   WallSprings(const std::vector<WallSpring>& springs, const Eigen::Matrix3Xd& rest, const SystemPattern& pattern);
 
-  /// Adds the springs at the positions `x` to K (`stiffness`), K_G (`geometric`), values in the pattern's order, and
-  /// to the internal force (n_dofs first entries); returns the energy [J]. Allocates nothing.
-  double add(const Eigen::Matrix3Xd& x, Eigen::VectorXd& stiffness, Eigen::VectorXd& geometric, Eigen::VectorXd& force);
+  /// Brings tension and length of each spring to the positions `x` and adds what they pull to `force`; returns the
+  /// energy [J]. Both have four numbers a node, the last of no meaning. Allocates nothing, as does add_tangent.
+  double add_force(const Eigen::Matrix4Xd& x, std::vector<WallSpringState>& states, Eigen::Matrix4Xd& force) const;
+  /// Adds K and K_G at the positions of the last add_force.
+  void add_tangent(const Eigen::Matrix4Xd& x, const std::vector<WallSpringState>& states, TangentValues& values) const;
 
   int size() const { return static_cast<int>(springs_.size()); }
-  bool intact(int spring) const { return springs_[spring].intact; }
-  void set_intact(int spring, bool intact) { springs_[spring].intact = intact; }
-  /// Of the last add: tension [N] and distance between the two points [m].
-  double tension(int spring) const { return springs_[spring].tension; }
-  double length(int spring) const { return springs_[spring].length; }
 
  private:
   struct Spring {
@@ -54,23 +60,21 @@ class WallSprings {
     int first_block;          ///< in blocks_: pairs (a, b) of its terms, a >= b
     double stiffness;         ///< k [N/m]
     double taut_length;       ///< L* [m]
-    bool intact = true;
-    double tension = 0.0;
-    double length = 0.0;
   };
   /// d = sum of coefficient times node position.
   struct Term {
     int node;
     double coefficient;
-    std::array<int, 3> dof;
   };
   /// Where the nine values of a pair's block go in the pattern, -1: nowhere.
   using Block = std::array<std::int32_t, 9>;
 
   void add_terms(const WallSpring& spring, const SystemPattern& pattern);
   void add_block(const Term& a, const Term& b, const SystemPattern& pattern);
-  Eigen::Vector3d separation(const Spring& spring, const Eigen::Matrix3Xd& x) const;
-  void scatter(const Spring& spring, const Eigen::Matrix3d& tangent, Eigen::VectorXd& values) const;
+  template <typename Positions>
+  Eigen::Vector3d separation(const Spring& spring, const Positions& x) const;
+  template <typename Add>
+  void scatter(const Spring& spring, const Eigen::Matrix3d& tangent, Add add) const;
 
   std::vector<Spring> springs_;
   std::vector<Term> terms_;

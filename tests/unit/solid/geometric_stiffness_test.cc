@@ -4,8 +4,10 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <cmath>
 #include <limits>
 
+#include "core/solid/element_assembler.h"
 #include "core/solid/tissue.h"
 #include "tests/unit/solid/box_mesh.h"
 
@@ -21,10 +23,16 @@ struct Bar {
                         std::vector<std::array<bool, 3>>(mesh.n_nodes(), {false, false, false})};
 
   Eigen::MatrixXd geometric_stiffness(const Eigen::Matrix3Xd& x) const {
-    Eigen::SparseMatrix<double> K_G = pattern.matrix();
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(K_G.nonZeros());
-    GeometricStiffness(mesh, {kMaterial}, pattern).add(x, values);
-    Eigen::Map<Eigen::VectorXd>(K_G.valuePtr(), K_G.nonZeros()) = values;
+    Eigen::SparseMatrix<double> K_G = pattern.make_matrix();
+    Eigen::VectorXd stiffness(K_G.nonZeros());
+    Eigen::Matrix4Xd positions = Eigen::Matrix4Xd::Zero(4, x.cols());
+    positions.topRows<3>() = x;
+    Eigen::Matrix4Xd force = Eigen::Matrix4Xd::Zero(4, x.cols());
+    std::vector<int> squeezed;
+    NodeBlocks blocks(pattern);
+    blocks.set_zero();
+    ElementAssembler(mesh, {kMaterial}, pattern).add(positions, force, squeezed, blocks);
+    blocks.write(pattern, {}, 0.0, stiffness.data(), K_G.valuePtr());
     return Eigen::MatrixXd(Eigen::SparseMatrix<double>(K_G.selfadjointView<Eigen::Lower>()));
   }
 };
@@ -47,6 +55,34 @@ TEST(GeometricStiffness, CostOfALinearFieldIsThatOfTheTension) {
   const Eigen::Map<const Eigen::VectorXd> u(field.data(), field.size());
   const double expected = bar.box.size.prod() * (G * S.asDiagonal() * G.transpose()).trace();
   EXPECT_NEAR(u.dot(bar.geometric_stiffness(x) * u), expected, 1e-11 * expected);
+}
+
+/// Against Eigen's solver: full, isotropic, of one and of two directions, nothing at all.
+TEST(GeometricStiffness, PositivePartIsThatOfTheEigenvalues) {
+  Jitter jitter(3);
+  for (int k = 0; k < 50; ++k) {
+    Lanes entries[6];
+    Eigen::Matrix3d expected[kLanes];
+    for (int lane = 0; lane < kLanes; ++lane) {
+      Eigen::Matrix3d full;
+      for (int c = 0; c < 3; ++c) full.col(c) = jitter.next_vector();
+      const Eigen::Vector3d n = full.col(0).normalized();
+      const Eigen::Matrix3d kinds[] = {full + full.transpose(), 2.0 * Eigen::Matrix3d::Identity(), n * n.transpose(),
+                                       n * n.transpose() - Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero()};
+      const Eigen::Matrix3d stress = std::pow(10.0, k % 9 - 6) * kinds[(k + lane) % 5];
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(stress);
+      expected[lane] =
+          eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() * eigen.eigenvectors().transpose();
+      for (int i = 0; i < 6; ++i) entries[i][lane] = stress(i % 3, i < 3 ? i : (i + 1) % 3);
+    }
+    take_positive_part(entries);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      for (int i = 0; i < 6; ++i) {
+        EXPECT_NEAR(entries[i][lane], expected[lane](i % 3, i < 3 ? i : (i + 1) % 3),
+                    1e-14 * std::pow(10.0, k % 9 - 6));
+      }
+    }
+  }
 }
 
 TEST(GeometricStiffness, IsPositiveWhateverTheStress) {

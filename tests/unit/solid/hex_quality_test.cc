@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -45,6 +46,23 @@ TEST(MinScaledJacobian, FindsTheWorstAtThePositionsGiven) {
   Eigen::Matrix3Xd x = mesh.rest_positions;
   x.col(box.node(3, 2, 1)) = Eigen::Vector3d(2.2, 1.1, 1.0);
   EXPECT_LT(compute_min_scaled_jacobian(mesh, x), 0.0);
+}
+
+/// Side by side as one by one, with lanes left over, a node on another and one nowhere.
+TEST(MinScaledJacobian, IsTheLeastOfAll) {
+  const Box box{{7, 3, 2}, {7, 3, 2}};
+  HexMesh mesh = box.make();
+  Jitter jitter(4);
+  for (int k = 0; k < 8; ++k) {
+    Eigen::Matrix3Xd x = mesh.rest_positions;
+    for (int a = 0; a < x.cols(); ++a) x.col(a) += 0.05 * k * jitter.next_vector();
+    if (k == 1) x.col(box.node(3, 1, 1)) = x.col(box.node(3, 2, 1));
+    if (k == 2) x(1, box.node(7, 3, 2)) = std::numeric_limits<double>::quiet_NaN();
+    double least = 1.0;
+    for (int e = 0; e < mesh.n_hexahedra(); ++e) least = std::min(least, compute_scaled_jacobian(mesh.gather(e, x)));
+    EXPECT_NEAR(compute_min_scaled_jacobian(mesh, x), least, 1e-14);
+    EXPECT_EQ(least == -1.0, k == 1 || k == 2);
+  }
 }
 
 }  // namespace

@@ -36,12 +36,19 @@ struct Slab {
   };
 
   Result evaluate(const Eigen::Matrix3Xd& x) const {
-    Eigen::SparseMatrix<double> K = pattern.matrix();
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(K.nonZeros());
-    Result result{0.0, Eigen::VectorXd::Zero(pattern.n_dofs()), {}};
+    Eigen::SparseMatrix<double> K = pattern.make_matrix();
+    Eigen::VectorXd stiffness = Eigen::VectorXd::Zero(K.nonZeros());
+    TangentValues values{stiffness.data(), K.valuePtr(), 1.0};
+    Eigen::Matrix4Xd positions = Eigen::Matrix4Xd::Zero(4, x.cols());
+    positions.topRows<3>() = x;
+    Eigen::Matrix4Xd force = Eigen::Matrix4Xd::Zero(4, x.cols());
     const InversionBarrier barrier(mesh, {{kModulus, 0.49, 920.0}});
-    result.energy = barrier.add(x, pattern, values, result.force);
-    Eigen::Map<Eigen::VectorXd>(K.valuePtr(), K.nonZeros()) = values;
+    Result result{0.0, {}, {}};
+    for (int e = 0; e < mesh.n_hexahedra(); ++e) {
+      result.energy += barrier.add_force(e, positions, force);
+      barrier.add_tangent(e, positions, pattern, values);
+    }
+    result.force = Eigen::Matrix3Xd(force.topRows<3>()).reshaped();
     result.tangent = Eigen::MatrixXd(Eigen::SparseMatrix<double>(K.selfadjointView<Eigen::Lower>()));
     return result;
   }

@@ -2,51 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-
+#include "tests/unit/simulation/allocation_counter.h"
 #include "tests/unit/simulation/small_case.h"
-
-namespace {
-
-std::atomic<long> allocations{0};
-std::atomic<bool> is_counting{false};
-
-void count() {
-  if (is_counting.load(std::memory_order_relaxed)) allocations.fetch_add(1, std::memory_order_relaxed);
-}
-
-}  // namespace
-
-// glibc's own, under other names.
-extern "C" {
-void* __libc_malloc(size_t size);
-void* __libc_calloc(size_t count, size_t size);
-void* __libc_realloc(void* old, size_t size);
-void* __libc_memalign(size_t alignment, size_t size);
-
-void* malloc(size_t size) {
-  count();
-  return __libc_malloc(size);
-}
-void* calloc(size_t n, size_t size) {
-  count();
-  return __libc_calloc(n, size);
-}
-void* realloc(void* old, size_t size) {
-  count();
-  return __libc_realloc(old, size);
-}
-void* aligned_alloc(size_t alignment, size_t size) {
-  count();
-  return __libc_memalign(alignment, size);
-}
-int posix_memalign(void** out, size_t alignment, size_t size) {
-  count();
-  *out = __libc_memalign(alignment, size);
-  return *out == nullptr ? 12 : 0;
-}
-}
 
 namespace lipofill::simulation {
 namespace {
@@ -62,21 +19,11 @@ long count_allocations_of_steps(const SimulationSpec& spec, const FaceModelSpec&
   EXPECT_TRUE(simulation.ok()) << simulation.status();
   if (!simulation.ok()) return -1;
   for (int k = 0; k < kWarmUpSteps; ++k) (*simulation)->advance_step();
-  allocations = 0;
-  is_counting = true;
-  for (int k = 0; k < kCountedSteps; ++k) (*simulation)->advance_step();
-  is_counting = false;
+  const long counted = lipofill::testing::count_allocations_of([&] {
+    for (int k = 0; k < kCountedSteps; ++k) (*simulation)->advance_step();
+  });
   EXPECT_EQ((*simulation)->phase(), Phase::kRunning) << (*simulation)->reason();
-  return allocations;
-}
-
-TEST(Allocation, CountsWhatAllocates) {
-  allocations = 0;
-  is_counting = true;
-  std::vector<double> made(1000, 1.0);
-  is_counting = false;
-  EXPECT_EQ(made.size(), 1000u);
-  EXPECT_EQ(allocations.load(), 1);
+  return counted;
 }
 
 TEST(Allocation, AStepOfFewCellsHasNone) {

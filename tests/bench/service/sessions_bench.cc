@@ -64,6 +64,19 @@ absl::Status follow(const ServedPlan& served, SessionsRow& row) {
   return absl::OkStatus();
 }
 
+absl::Status compare_ends(const ServedPlan& served, SessionsRow& row) {
+  for (int k = 0; k < row.sessions; ++k) {
+    const auto end = served.await_end(id_of(k));
+    if (!end.ok()) return end.status();
+    const std::string& hash = end->summary().state_hash();
+    if (k == 0) row.state_hash = hash;
+    if (hash != row.state_hash) {
+      return absl::DataLossError(absl::StrCat(end->name(), " ends with hash ", hash, ", others with ", row.state_hash));
+    }
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::StatusOr<SessionsRow> measure_sessions(const client::PlanFile& plan, int workers, int sessions,
@@ -79,7 +92,7 @@ absl::StatusOr<SessionsRow> measure_sessions(const client::PlanFile& plan, int w
   row.created_mb_a_session = (read_process((*served)->daemon()).resident_mb - row.idle_mb) / sessions;
   for (int k = 0; k < sessions && status.ok(); ++k) status = (*served)->start(id_of(k));
   if (status.ok()) status = follow(**served, row);
-  for (int k = 0; k < sessions && status.ok(); ++k) status = (*served)->await_end(id_of(k)).status();
+  if (status.ok()) status = compare_ends(**served, row);
   for (int k = 0; k < sessions && status.ok(); ++k) status = (*served)->remove(id_of(k));
   if (!status.ok()) return status;
   row.left_mb = read_process((*served)->daemon()).resident_mb - row.idle_mb;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "absl/status/statusor.h"
 #include "client/cpp/plan_file.h"
 
@@ -18,11 +20,12 @@ struct SessionsRow {
   double idle_mb = 0.0;               ///< resident with the model alone
   double created_mb_a_session = 0.0;  ///< more with the simulations made
   double running_mb_a_session = 0.0;  ///< more while they run, at most
+  std::string state_hash;             ///< of each at its end
   double left_mb = 0.0;               ///< more than with the model alone once they are deleted
 };
 
 /// Runs `sessions` simulations of the plan for a simulated time [s] on a fresh daemon. Figures are taken from the start
-/// of the first until the first one ends.
+/// of the first until the first one ends. DATA_LOSS when they do not end with the same bytes.
 absl::StatusOr<SessionsRow> measure_sessions(const client::PlanFile& plan, int workers, int sessions,
                                              double simulated_s);
 

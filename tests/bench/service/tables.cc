@@ -35,7 +35,8 @@ Json show(const std::vector<SessionsRow>& rows) {
                     {"idle_mb", row.idle_mb},
                     {"created_mb_per_session", row.created_mb_a_session},
                     {"running_mb_per_session", row.running_mb_a_session},
-                    {"left_mb", row.left_mb}});
+                    {"left_mb", row.left_mb},
+                    {"state_hash", row.state_hash}});
   }
   return json;
 }

@@ -131,8 +131,8 @@ RayTree::RayTree(const SurfaceMesh& mesh) {
 struct RayTree::Ray {
   Ray(const Eigen::Vector3d& the_from, const Eigen::Vector3d& the_direction) {
     for (int c = 0; c < 3; ++c) {
-      from[c] = the_from[c] - Lanes{};
-      direction[c] = the_direction[c] - Lanes{};
+      from[c] = fill_lanes(the_from[c]);
+      direction[c] = fill_lanes(the_direction[c]);
       inverse[c] = 1.0 / direction[c];
       is_negative[c] = std::signbit(the_direction[c]);
     }
@@ -142,14 +142,14 @@ struct RayTree::Ray {
   /// multiplies 0 by infinity: comparisons with the not-a-number that gives are false, and the slab is passed over.
   Lanes enter(const Node& node, double reach) const {
     Lanes enter{};
-    Lanes leave = reach - Lanes{};
+    Lanes leave = fill_lanes(reach);
     for (int c = 0; c < 3; ++c) {
       const Lanes near = ((is_negative[c] ? node.high[c] : node.low[c]) - from[c]) * inverse[c];
       const Lanes far = ((is_negative[c] ? node.low[c] : node.high[c]) - from[c]) * inverse[c];
       enter = near > enter ? near : enter;
       leave = far < leave ? far : leave;
     }
-    return enter <= leave ? enter : kInfinity - Lanes{};
+    return enter <= leave ? enter : fill_lanes(kInfinity);
   }
 
   LanesXyz from;
@@ -160,6 +160,7 @@ struct RayTree::Ray {
 
 namespace {
 
+// Without fused products: which triangles a ray meets at their edges stays as it always was.
 template <typename Xyz>
 auto dot(const Xyz& a, const Xyz& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -173,7 +174,7 @@ Xyz cross(const Xyz& a, const Xyz& b) {
 }  // namespace
 
 /// Moeller & Trumbore (1997), for both sides of the triangles.
-RayTree::Lanes RayTree::meet(const Leaf& leaf, const Ray& ray) {
+Lanes RayTree::meet(const Leaf& leaf, const Ray& ray) {
   const LanesXyz p = cross(ray.direction, leaf.edge2);
   const Lanes determinant = dot(leaf.edge1, p);
   const LanesXyz gap = {ray.from[0] - leaf.corner[0], ray.from[1] - leaf.corner[1], ray.from[2] - leaf.corner[2]};
@@ -182,7 +183,7 @@ RayTree::Lanes RayTree::meet(const Leaf& leaf, const Ray& ray) {
   const Lanes v = dot(ray.direction, q) / determinant;
   const Lanes distance = dot(leaf.edge2, q) / determinant;
   const auto met = (determinant != 0.0) & (u >= 0.0) & (u <= 1.0) & (v >= 0.0) & (u + v <= 1.0) & (distance > 0.0);
-  return met ? distance : kInfinity - Lanes{};
+  return met ? distance : fill_lanes(kInfinity);
 }
 
 template <typename Reach, typename Visit>
@@ -216,7 +217,7 @@ bool RayTree::is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& dir
   walk(
       from, direction, [] { return kInfinity; },
       [&](const Lanes& distance) {
-        for (int lane = 0; lane < kLanes; ++lane) blocked = blocked || distance[lane] < kInfinity;
+        blocked = any(distance < kInfinity);
         return !blocked;
       });
   return blocked;

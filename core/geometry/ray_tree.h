@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "core/base/lanes.h"
 #include "core/geometry/surface_mesh.h"
 
 namespace lipofill::geometry {
@@ -23,8 +24,6 @@ class RayTree {
   double find_first(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double reach) const;
 
  private:
-  static constexpr int kLanes = 4;
-  using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
   using LanesXyz = std::array<Lanes, 3>;
 
   /// Up to four boxes and what is in them.

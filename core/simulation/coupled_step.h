@@ -92,7 +92,10 @@ class CoupledStep {
  private:
   CoupledStep(const FaceModel& model, const std::vector<FilmLayout>& films, const SimulationSpec& spec);
   absl::Status set_up();
-  absl::Status analyse();
+  absl::StatusOr<std::shared_ptr<const coupling::GapGeometry>> share_gap(const FilmLayout& film,
+                                                                         const coupling::WallNodes& walls,
+                                                                         const std::string& key);
+  absl::Status analyse(const std::vector<std::string>& gap_keys);
   absl::Status check_every_cell_can_open();
   bool open_to(const Eigen::VectorXd& target, double tolerance, SimulationState& state, Eigen::VectorXd& pressure);
 

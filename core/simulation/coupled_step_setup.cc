@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
+#include "core/simulation/shared_parts.h"
 
 namespace lipofill::simulation {
 namespace {
@@ -57,6 +58,7 @@ absl::StatusOr<std::unique_ptr<CoupledStep>> CoupledStep::create(const FaceModel
 
 absl::Status CoupledStep::set_up() {
   std::vector<coupling::GapVolume> gaps;
+  std::vector<std::string> gap_keys;
   cell_offset_ = {0};
   for (const FilmLayout& film : films_) {
     const int offset = cell_offset_.back();
@@ -67,8 +69,10 @@ absl::Status CoupledStep::set_up() {
     advection_.emplace_back(film.grid);
     if (film.wall != FilmWallKind::kTissue) continue;
     gap_of_film_.back() = static_cast<int>(gaps.size());
-    gaps.emplace_back(model_.geometry.grid, tissue_->walls[gaps.size()], film.grid, tissue_->tissue.dof_of_component(),
-                      tissue_->tissue.n_dofs());
+    gap_keys.push_back(key_of_gap(tissue_->key, model_.geometry.grid, tissue_->walls[gaps.size()], film.grid));
+    auto gap = share_gap(film, tissue_->walls[gaps.size()], gap_keys.back());
+    if (!gap.ok()) return gap.status();
+    gaps.emplace_back(*std::move(gap));
     for (int cell = 0; cell < film.grid.n_cells(); ++cell) cell_of_tissue_.push_back(offset + cell);
   }
   std::vector<film::FilmProjection*> films;
@@ -81,7 +85,7 @@ absl::Status CoupledStep::set_up() {
     const double extent = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).norm();
     least_force_ = kLeastForceShare * tissue_->tissue.system_matrix().diagonal().norm() * extent;
     gaps_ = std::make_unique<coupling::GapSystem>(std::move(gaps), tissue_->tissue.n_dofs());
-    if (const absl::Status status = analyse(); !status.ok()) return status;
+    if (const absl::Status status = analyse(gap_keys); !status.ok()) return status;
     const absl::Status status = check_every_cell_can_open();
     if (!status.ok()) return status;
   }
@@ -105,12 +109,23 @@ absl::Status CoupledStep::set_up() {
   return absl::OkStatus();
 }
 
+absl::StatusOr<std::shared_ptr<const coupling::GapGeometry>> CoupledStep::share_gap(const FilmLayout& film,
+                                                                                    const coupling::WallNodes& walls,
+                                                                                    const std::string& key) {
+  return model_.shared->gaps.get(key, [&]() -> absl::StatusOr<std::shared_ptr<const coupling::GapGeometry>> {
+    return std::make_shared<const coupling::GapGeometry>(coupling::make_gap_geometry(
+        model_.geometry.grid, walls, film.grid, tissue_->tissue.dof_of_component(), tissue_->tissue.n_dofs()));
+  });
+}
+
 /// With the pressures in the factorisation, where there are few enough.
-absl::Status CoupledStep::analyse() {
+absl::Status CoupledStep::analyse(const std::vector<std::string>& gap_keys) {
   const Eigen::SparseMatrix<double>& s = tissue_->tissue.system_matrix();
   const Eigen::SparseMatrix<double>& b = gaps_->derivative();
   const bool is_dense = b.rows() <= kMaxDenseCells;
-  auto analysis = coupling::FactorAnalysis::create(s, is_dense ? b : Eigen::SparseMatrix<double>(0, b.cols()));
+  auto analysis = model_.shared->analyses.get(key_of_analysis(tissue_->key, gap_keys, is_dense), [&] {
+    return coupling::FactorAnalysis::create(s, is_dense ? b : Eigen::SparseMatrix<double>(0, b.cols()));
+  });
   if (!analysis.ok()) return field_violation("model", std::string(analysis.status().message()));
   const double bytes = static_cast<double>((*analysis)->n_values()) * sizeof(float);
   if (bytes > kMaxFactorBytes) {

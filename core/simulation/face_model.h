@@ -62,6 +62,9 @@ struct BoneFinding {
   ThicknessRange depth;         ///< from the skin
 };
 
+struct SharedParts;
+std::shared_ptr<SharedParts> make_shared_parts();
+
 /// A patient's layered face model. Immutable once built and shared between simulations.
 struct FaceModel {
   geometry::FaceGeometry geometry;
@@ -71,7 +74,8 @@ struct FaceModel {
   std::vector<ThicknessRange> thickness;  ///< of each layer
   std::optional<BoneFinding> bone;
   bool is_square = false;
-  std::string content_hash;  ///< SHA-256 of everything a simulation depends on
+  std::string content_hash;                                   ///< SHA-256 of everything a simulation depends on
+  std::shared_ptr<SharedParts> shared = make_shared_parts();  ///< of its simulations (shared_parts.h)
 };
 
 /// INVALID_ARGUMENT with field violations named as in lipofill.v1.ModelSpec, FAILED_PRECONDITION from the scan,

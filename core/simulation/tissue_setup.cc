@@ -5,6 +5,8 @@
 #include <functional>
 #include <utility>
 
+#include "core/simulation/shared_parts.h"
+
 namespace lipofill::simulation {
 namespace {
 
@@ -127,11 +129,16 @@ absl::StatusOr<TissueSetup> set_up_tissue(const FaceModel& model, const std::vec
   if (!fibres.ok()) return fibres.status();
   std::vector<solid::ElasticMaterial> materials;
   for (const TissueLayerSpec& layer : model.layers) materials.push_back(layer.material);
-  auto tissue = solid::Tissue::create(std::move(held.split.mesh), std::move(materials), std::move(held.supports),
-                                      {spec.damping_mass, spec.damping_stiffness}, std::move(fibres->springs));
+  std::string key = key_of_tissue(held.split.mesh, materials, held.supports, fibres->springs);
+  auto structure = model.shared->tissues.get(key, [&] {
+    return solid::TissueStructure::create(std::move(held.split.mesh), materials, std::move(held.supports),
+                                          fibres->springs);
+  });
+  if (!structure.ok()) return structure.status();
+  auto tissue = solid::Tissue::create(*std::move(structure), {spec.damping_mass, spec.damping_stiffness});
   if (!tissue.ok()) return tissue.status();
   return TissueSetup{*std::move(tissue), std::move(held.walls), std::move(held.skin_nodes),
-                     std::move(fibres->ligaments)};
+                     std::move(fibres->ligaments), std::move(key)};
 }
 
 }  // namespace lipofill::simulation

@@ -17,7 +17,7 @@ import sys
 
 ROOT = "Simulation::advance_step"
 WIDTH, ROW, LEAST_WIDTH = 1200, 17, 1.5
-COLOURS = {"solid": "#d98c5f", "film": "#6fa8dc", "coupling": "#93c47d", "simulation": "#c9b458", "other": "#b7b7b7"}
+COLOURS = {"geometry": "#b4a7d6", "solid": "#d98c5f", "film": "#6fa8dc", "coupling": "#93c47d", "simulation": "#c9b458", "other": "#b7b7b7"}
 
 
 def without_brackets(name, opening, closing):
@@ -39,7 +39,7 @@ def short_name(symbol):
 
 
 def part_of(symbol):
-    match = re.match(r"(?:void )?lipofill::(solid|film|coupling|simulation)::", symbol)
+    match = re.match(r"(?:void )?lipofill::(geometry|solid|film|coupling|simulation)::", symbol)
     return match.group(1) if match else "other"
 
 
@@ -71,8 +71,8 @@ def build_tree(stacks):
     return root
 
 
-def depth_of(node):
-    return 1 + max((depth_of(child) for child in node.children.values()), default=-1)
+def depth_of(node, least_count):
+    return 1 + max((depth_of(child, least_count) for child in node.children.values() if child.count >= least_count), default=-1)
 
 
 def draw(node, x, level, scale, height, boxes):
@@ -92,7 +92,7 @@ def box(name, part, percent, x, y, width):
 
 
 def make_svg(root):
-    height = (depth_of(root) + 2) * ROW
+    height = (depth_of(root, LEAST_WIDTH * root.count / WIDTH) + 2) * ROW
     boxes = []
     draw(root, 0.0, 0, WIDTH / root.count, height - ROW, boxes)
     legend = "".join(

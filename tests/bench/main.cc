@@ -121,7 +121,7 @@ absl::Status run(const Options& options) {
 int main_of(int argc, char** argv) {
   Options options;
   CLI::App app("Measures steps of jaw_angle and the ways to solve them; prints tables and writes them as JSON.");
-  app.add_option("--scale", options.scales, "hexahedra over those of the plan: 1, 4, 16, 64; may be repeated")
+  app.add_option("--scale", options.scales, "sizes beside the plan's own: 4, 16, 64 times it; may be repeated")
       ->check(CLI::IsMember({1, 4, 16, 64}));
   app.add_option("--rounds", options.rounds, "how often everything is done")->check(CLI::Range(1, 100));
   app.add_option("--steps", options.steps_a_round, "steps a round at each scale")->check(CLI::Range(1, 100));
@@ -136,7 +136,9 @@ int main_of(int argc, char** argv) {
     options.rounds = 1;
     options.steps_a_round = 2;
   }
+  if (!options.is_smoke) options.scales.push_back(1);
   std::sort(options.scales.begin(), options.scales.end());
+  options.scales.erase(std::unique(options.scales.begin(), options.scales.end()), options.scales.end());
   openblas_set_num_threads(1);
   omp_set_max_active_levels(0);
   const absl::Status status = run(options);

@@ -77,6 +77,7 @@ absl::Status Run::read_plan() {
     if (!options_.bone.empty()) plan_.plan.mutable_bone()->set_unit(*options_.unit);
   }
   if (options_.interval_ms) plan_.plan.mutable_output()->set_interval_ms(*options_.interval_ms);
+  if (options_.preview) plan_.plan.mutable_simulation()->set_preview(true);
   if (options_.fast) aim_at_settled_shape(*plan_.plan.mutable_simulation()->mutable_time());
   if (plan_.plan.name().empty()) plan_.plan.set_name(plan_.path.stem().string());
   if (auto status = load_plan_landmarks(&plan_); !status.ok()) return status;
@@ -190,7 +191,9 @@ absl::Status Run::take_frames(const v1::WatchRequest& request, const std::functi
     on_watching();
     return absl::OkStatus();
   };
-  handlers.on_frame = [this](const Frame& frame) { return folder_.write_frame(frame.time_s, frame.fields); };
+  handlers.on_frame = [this](const Frame& frame) {
+    return frame.preview ? folder_.write_preview(frame.fields) : folder_.write_frame(frame.time_s, frame.fields);
+  };
   return watch(*connection_, request, handlers);
 }
 
@@ -246,10 +249,22 @@ absl::Status Run::start_and_follow(const std::stop_token& frames_ended) {
   std::unique_lock lock(mutex);
   while (!frames_ended.stop_requested()) {
     // A call that fails here is seen by the taker too, which takes the stream up again or gives up.
+    tell_preview();
     if (fetch_series(*connection_, simulation_.name(), &rows_).ok()) show_progress();
     wake.wait_for(lock, frames_ended, kFollowPeriod, [&frames_ended] { return frames_ended.stop_requested(); });
   }
   return absl::OkStatus();
+}
+
+/// Once, when the preview is there or has failed.
+void Run::tell_preview() {
+  if (preview_told_ || !simulation_.spec().preview()) return;
+  const auto simulation = get_simulation(*connection_, simulation_.name());
+  if (!simulation.ok()) return;
+  const v1::PreviewSummary& preview = simulation->summary().preview();
+  if (preview.state() == v1::PreviewSummary::PENDING || preview.state() == v1::PreviewSummary::RUNNING) return;
+  progress_.note(absl::StrCat("preview: ", preview_text(preview)));
+  preview_told_ = true;
 }
 
 void Run::show_progress() {
@@ -268,6 +283,7 @@ absl::Status Run::write_results() {
   auto simulation = get_simulation(*connection_, simulation_.name());
   if (!simulation.ok()) return simulation.status();
   simulation_ = *std::move(simulation);
+  tell_preview();
   if (auto status = fetch_series(*connection_, simulation_.name(), &rows_); !status.ok()) return status;
   if (!rows_.empty()) progress_.finish(progress_text(rows_.back()));
   record_.kept = options_.keep;

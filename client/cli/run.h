@@ -27,6 +27,7 @@ struct RunOptions {
   std::string landmarks;  ///< in place of the plan's
   std::optional<v1::ScanUnit> unit;
   std::optional<double> interval_ms;
+  bool preview = false;  ///< a coarse model's settled shape first
   std::string evaluate;  ///< a target surface; empty: none
   v1::ScanUnit target_unit = v1::MILLIMETRE;
   bool spawn = false;
@@ -61,6 +62,7 @@ class Run {
   absl::Status take_frames(const v1::WatchRequest& request, const std::function<void()>& on_watching);
   absl::Status start_and_follow(const std::stop_token& frames_ended);
   void show_progress();
+  void tell_preview();
   void stop_simulation();
   void print_summary() const;
   ExitCode exit_code() const;
@@ -78,6 +80,7 @@ class Run {
   v1::ModelSpec model_spec_;
   v1::Model model_;
   v1::Simulation simulation_;
+  bool preview_told_ = false;
   std::vector<v1::SeriesRow> rows_;
 };
 

@@ -17,6 +17,7 @@ constexpr char kDescription[] =
 constexpr char kRunExamples[] =
     "  lipofill run jaw_angle.json --out result --spawn\n"
     "  lipofill run jaw_angle.json --out result --spawn --fast\n"
+    "  lipofill run jaw_angle.json --out result --spawn --preview\n"
     "  lipofill run jaw_angle.json --out result --spawn --scan face.obj --landmarks face.json --unit mm\n"
     "  lipofill run jaw_angle.json --out result --spawn --interval-ms 500 --evaluate goal.obj\n"
     "  lipofill run square.json --out result --server 10.0.0.5:50061 --json --quiet\n";
@@ -48,6 +49,9 @@ void add_run_command(CLI::App& root, Application& application) {
       "--fast", options->fast,
       "only the settled shape counts: few long steps in place of the plan's (time.goal SETTLED_SHAPE with "
       "its own max_step_ms, max_injection_step_ms and error_tolerance_mm)");
+  command->add_flag("--preview", options->preview,
+                    "first the settled shape of a coarse model, told as soon as it is there and written to "
+                    "skin_preview.vtp and scan_preview.vtp; in the end, how far it was from the result");
   command->add_option("--evaluate", options->evaluate,
                       "measure the result against this surface, as lipofill evaluate does");
   command->add_option("--target-unit", options->target_unit, "unit of that surface: mm (default), cm or m")

@@ -41,8 +41,9 @@ void print_frame(const Application& application, const Frame& frame) {
   const double pressure = largest(frame.fields, "skin.pressure");
   if (!application.json) {
     std::cout << absl::StrFormat(
-                     "step %d  %.3f s  skin %.3f mm  pressure up to %.3f kPa%s%s\n", frame.sequence, frame.time_s,
-                     displacement, pressure / 1e3,
+                     "%s %d  %.3f s  skin %.3f mm  pressure up to %.3f kPa%s%s\n",
+                     frame.preview ? "preview at step" : "step", frame.sequence, frame.time_s, displacement,
+                     pressure / 1e3,
                      frame.skipped_frames > 0 ? absl::StrCat("  (", frame.skipped_frames, " frames skipped)") : "",
                      frame.end ? "  end" : "")
               << std::flush;
@@ -54,7 +55,8 @@ void print_frame(const Application& application, const Frame& frame) {
                                        {"skipped_frames", frame.skipped_frames},
                                        {"skin_max_displacement_mm", displacement},
                                        {"skin_max_pressure_pa", pressure},
-                                       {"end", frame.end}};
+                                       {"end", frame.end},
+                                       {"preview", frame.preview}};
   std::cout << line.dump() << "\n" << std::flush;
 }
 

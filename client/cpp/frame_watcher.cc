@@ -51,8 +51,8 @@ class StreamAssembler {
     request_.set_seen_sequence(slice.sequence());
     moved_ = true;
     ended_ = slice.end();
-    return handlers_.on_frame(
-        {slice.epoch(), slice.sequence(), slice.time_s(), slice.skipped_frames(), slice.end(), *std::move(fields)});
+    return handlers_.on_frame({slice.epoch(), slice.sequence(), slice.time_s(), slice.skipped_frames(), slice.end(),
+                               *std::move(fields), slice.preview()});
   }
 
   v1::WatchRequest& request_;  // told what has been seen, for taking up a broken stream

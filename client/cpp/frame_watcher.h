@@ -26,6 +26,7 @@ struct Frame {
   uint64_t skipped_frames = 0;
   bool end = false;
   std::vector<Array> fields;
+  bool preview = false;  ///< the settled shape as a coarse model foresees it, not a step
 };
 
 /// What to do with what comes. An error ends the watch with that error.

@@ -27,7 +27,43 @@ std::string series_header(const v1::SimulationSpec& spec) {
          "film_dissipation_mj,ligament_tension_n,broken_ligament_points,closed_cells\n";
 }
 
+std::string preview_state_name(const v1::PreviewSummary& preview) {
+  return v1::PreviewSummary::State_Name(preview.state());
+}
+
+/// null where the plan asks for none; the differences are null until they are known.
+nlohmann::ordered_json preview_json(const v1::Summary& summary) {
+  if (!summary.has_preview()) return nullptr;
+  const v1::PreviewSummary& preview = summary.preview();
+  const auto known = [](bool has, double value) { return has ? nlohmann::ordered_json(value) : nullptr; };
+  return {{"state", preview_state_name(preview)},
+          {"reason", preview.reason()},
+          {"wall_s", preview.wall_s()},
+          {"steps", preview.steps()},
+          {"time_s", preview.time_s()},
+          {"hexahedra", preview.hexahedra()},
+          {"film_cells", preview.film_cells()},
+          {"skin_max_displacement_mm", preview.skin_max_displacement_mm()},
+          {"skin_volume_change_ml", preview.skin_volume_change_ml()},
+          {"difference_max_mm", known(preview.has_difference_max_mm(), preview.difference_max_mm())},
+          {"difference_rms_mm", known(preview.has_difference_rms_mm(), preview.difference_rms_mm())},
+          {"difference_volume_ml", known(preview.has_difference_volume_ml(), preview.difference_volume_ml())}};
+}
+
 }  // namespace
+
+std::string preview_text(const v1::PreviewSummary& preview) {
+  const bool has_shape = preview.state() == v1::PreviewSummary::DONE || preview.state() == v1::PreviewSummary::OUTDATED;
+  if (!has_shape) {
+    return absl::StrCat(preview_state_name(preview), preview.reason().empty() ? "" : ", ", preview.reason());
+  }
+  std::string text =
+      absl::StrFormat("skin moved %.2f mm at most, volume changed by %.2f mL; %u steps in %.2f s on %u hexahedra",
+                      preview.skin_max_displacement_mm(), preview.skin_volume_change_ml(), preview.steps(),
+                      preview.wall_s(), preview.hexahedra());
+  if (preview.state() == v1::PreviewSummary::OUTDATED) absl::StrAppend(&text, "; outdated, ", preview.reason());
+  return text;
+}
 
 std::string summary_json(const std::string& plan, const v1::Simulation& simulation) {
   const v1::Summary& summary = simulation.summary();
@@ -84,6 +120,7 @@ std::string summary_json(const std::string& plan, const v1::Simulation& simulati
       {"film_dissipation_mj", summary.film_dissipation_mj()},
       {"closed_cells", summary.closed_cells()},
       {"ligaments", ligaments},
+      {"preview", preview_json(summary)},
   };
   return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
@@ -121,6 +158,12 @@ std::string summary_text(const std::string& plan, const v1::Simulation& simulati
   }
   if (s.closed_cells() > 0) {
     absl::StrAppendFormat(&text, "  tissue       %u film cells not entered yet\n", s.closed_cells());
+  }
+  if (s.has_preview()) absl::StrAppend(&text, "  preview      ", preview_text(s.preview()), "\n");
+  if (s.preview().has_difference_max_mm()) {
+    absl::StrAppendFormat(&text, "               %.2f mm from the result at most, %.2f mm rms; %+.2f mL of volume\n",
+                          s.preview().difference_max_mm(), s.preview().difference_rms_mm(),
+                          s.preview().difference_volume_ml());
   }
   for (const v1::LigamentSummary& ligament : s.ligaments()) {
     absl::StrAppendFormat(&text, "  ligament %-20s %.2f N, walls %.2f mm apart, %u of %u points broken\n",

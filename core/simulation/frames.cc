@@ -155,32 +155,53 @@ std::vector<MeshTopology> Simulation::topology() const {
   return meshes;
 }
 
+/// @param moved   displacement of the nodes of the skin [m] (3, n)
+/// @param places  theirs in the chart
+void Simulation::Impl::add_skin_fields(const Eigen::Matrix3Xd& moved, const std::vector<geometry::ChartPoint>& places,
+                                       std::vector<FrameField>& fields) const {
+  fields.push_back({"skin", "displacement", "mm", FieldLocation::kPoint, 3, to_floats(moved, kMillimetresPerMetre)});
+  fields.push_back(
+      {"skin", "pressure", "Pa", FieldLocation::kPoint, 1, to_floats(film_value_on_skin(places, true), 1.0)});
+  fields.push_back({"skin", "thickness", "mm", FieldLocation::kPoint, 1,
+                    to_floats(film_value_on_skin(places, false), kMillimetresPerMetre)});
+}
+
+/// @param skin  displacement of the nodes of this simulation's skin [m]
+void Simulation::Impl::add_scan_fields(const geometry::FaceGeometry& face, const Eigen::Matrix3Xd& skin,
+                                       std::vector<FrameField>& fields) const {
+  Eigen::Matrix3Xd moved = Eigen::Matrix3Xd::Zero(3, face.scan.n_vertices());
+  std::vector<geometry::ChartPoint> places;
+  for (const geometry::Rider& rider : face.riders) {
+    moved.col(rider.vertex) = displacement_at(model->geometry.grid, skin, rider.place);
+    places.push_back(rider.place);
+  }
+  const std::vector<double> rider_pressure = film_value_on_skin(places, true);
+  std::vector<double> pressure(face.scan.n_vertices(), 0.0);
+  for (size_t k = 0; k < face.riders.size(); ++k) pressure[face.riders[k].vertex] = rider_pressure[k];
+  fields.push_back({"scan", "displacement", "mm", FieldLocation::kPoint, 3, to_floats(moved, kMillimetresPerMetre)});
+  fields.push_back({"scan", "pressure", "Pa", FieldLocation::kPoint, 1, to_floats(pressure, 1.0)});
+}
+
+std::vector<FrameField> Simulation::frame_on(const geometry::FaceGeometry& face) const {
+  const Eigen::Matrix3Xd skin = impl_->skin_displacement();
+  const std::vector<geometry::ChartPoint> places = skin_node_places(face.grid);
+  Eigen::Matrix3Xd moved(3, places.size());
+  for (size_t k = 0; k < places.size(); ++k) {
+    moved.col(k) = displacement_at(impl_->model->geometry.grid, skin, places[k]);
+  }
+  std::vector<FrameField> fields;
+  impl_->add_skin_fields(moved, places, fields);
+  if (face.scan.n_vertices() > 0) impl_->add_scan_fields(face, skin, fields);
+  return fields;
+}
+
 std::vector<FrameField> Simulation::frame(const std::vector<std::string>& meshes) const {
   const Impl& impl = *impl_;
   const geometry::FaceGeometry& face = impl.model->geometry;
   std::vector<FrameField> fields;
   const Eigen::Matrix3Xd skin = impl.skin_displacement();
-  if (wanted(meshes, "skin")) {
-    const std::vector<geometry::ChartPoint> places = skin_node_places(face.grid);
-    fields.push_back({"skin", "displacement", "mm", FieldLocation::kPoint, 3, to_floats(skin, kMillimetresPerMetre)});
-    fields.push_back(
-        {"skin", "pressure", "Pa", FieldLocation::kPoint, 1, to_floats(impl.film_value_on_skin(places, true), 1.0)});
-    fields.push_back({"skin", "thickness", "mm", FieldLocation::kPoint, 1,
-                      to_floats(impl.film_value_on_skin(places, false), kMillimetresPerMetre)});
-  }
-  if (face.scan.n_vertices() > 0 && wanted(meshes, "scan")) {
-    Eigen::Matrix3Xd moved = Eigen::Matrix3Xd::Zero(3, face.scan.n_vertices());
-    std::vector<geometry::ChartPoint> places;
-    for (const geometry::Rider& rider : face.riders) {
-      moved.col(rider.vertex) = displacement_at(face.grid, skin, rider.place);
-      places.push_back(rider.place);
-    }
-    const std::vector<double> rider_pressure = impl.film_value_on_skin(places, true);
-    std::vector<double> pressure(face.scan.n_vertices(), 0.0);
-    for (size_t k = 0; k < face.riders.size(); ++k) pressure[face.riders[k].vertex] = rider_pressure[k];
-    fields.push_back({"scan", "displacement", "mm", FieldLocation::kPoint, 3, to_floats(moved, kMillimetresPerMetre)});
-    fields.push_back({"scan", "pressure", "Pa", FieldLocation::kPoint, 1, to_floats(pressure, 1.0)});
-  }
+  if (wanted(meshes, "skin")) impl.add_skin_fields(skin, skin_node_places(face.grid), fields);
+  if (face.scan.n_vertices() > 0 && wanted(meshes, "scan")) impl.add_scan_fields(face, skin, fields);
   const SimulationState rest = impl.stepper->rest_state();
   for (size_t f = 0; f < impl.films.size(); ++f) {
     const std::string name = "film/" + impl.films[f].name;

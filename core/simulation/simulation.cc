@@ -232,6 +232,9 @@ const SimulationSpec& Simulation::spec() const {
 const FaceModel& Simulation::model() const {
   return *impl_->model;
 }
+const std::shared_ptr<const FaceModel>& Simulation::shared_model() const {
+  return impl_->model;
+}
 
 absl::Status Simulation::inject(const InjectionSpec& injection) {
   if (impl_->phase != Phase::kRunning) {

@@ -119,6 +119,7 @@ class Simulation {
   absl::Status inject(const InjectionSpec& injection);
   const SimulationSpec& spec() const;
   const FaceModel& model() const;
+  const std::shared_ptr<const FaceModel>& shared_model() const;
 
   int n_hexahedra() const;
   int n_film_cells() const;
@@ -132,6 +133,10 @@ class Simulation {
   ///   film) scan:   displacement [mm] (3), pressure [Pa] film/x: displacement [mm] (3) at points; thickness [mm],
   ///   pressure [Pa], velocity [mm/s] (3), wet (0 or 1) on cells tissue: displacement [mm] (3) at points
   std::vector<FrameField> frame(const std::vector<std::string>& meshes) const;
+
+  /// Skin and scan of another model of the same chart, moved and coloured by this simulation: the fields of frame() on
+  /// "skin" and "scan", displacements bilinear between the nodes of this skin.
+  std::vector<FrameField> frame_on(const geometry::FaceGeometry& face) const;
 
   /// SHA-256 of the state: positions, velocities, volumes, pressures, time; equal for equal runs, byte for byte.
   std::string state_hash() const;

@@ -58,6 +58,10 @@ struct Simulation::Impl {
   Eigen::Matrix3Xd skin_positions() const;
   Eigen::Matrix3Xd skin_displacement() const;
 
+  void add_skin_fields(const Eigen::Matrix3Xd& moved, const std::vector<geometry::ChartPoint>& places,
+                       std::vector<FrameField>& fields) const;
+  void add_scan_fields(const geometry::FaceGeometry& face, const Eigen::Matrix3Xd& skin,
+                       std::vector<FrameField>& fields) const;
   std::vector<double> film_value_on_skin(const std::vector<geometry::ChartPoint>& places, bool pressure) const;
 };
 

@@ -16,7 +16,7 @@ struct TimeFigures {
 
 /// For the settled shape steps are bounded by their error alone, and that may be ten times larger: the equilibrium at
 /// the end forgets how it was reached. Against injections at 10 ms steps the settled skin of the sample plans changes
-/// by less than 0.002 mm (0.03 mm where fat with a yield stress never quite rests);
+/// by less than 0.005 mm (0.03 mm where fat with a yield stress never quite rests);
 /// core/doc/decisions/011-settled-shape.md.
 inline TimeFigures figures_of(TimeGoal goal) {
   if (goal == TimeGoal::kTransient) return {};

@@ -77,6 +77,7 @@ v1::FrameSlice to_whole_frame(const Frame& frame, const std::vector<std::string>
   whole.set_sequence(frame.sequence);
   whole.set_time_s(frame.time_s);
   whole.set_end(frame.end);
+  whole.set_preview(frame.preview);
   for (const simulation::FrameField& field : frame.fields) {
     if (!contains(meshes, field.mesh)) continue;
     const size_t components = static_cast<size_t>(field.components);
@@ -166,6 +167,7 @@ EncodedMessages encode_frame(const v1::FrameSlice& whole) {
     slice.set_time_s(whole.time_s());
     slice.set_topology_hash(whole.topology_hash());
     slice.set_end(whole.end());
+    slice.set_preview(whole.preview());
     slice.set_last(i + 1 == pieces.size());
     for (const v1::ArraySlice& array : pieces[i]) *slice.add_fields() = array;
     encoded.messages.push_back(slice.SerializeAsString());

@@ -58,6 +58,40 @@ v1::BoneReport to_bone_report(const simulation::BoneFinding& bone) {
   return report;
 }
 
+v1::PreviewSummary::State to_preview_state(PreviewState state) {
+  switch (state) {
+    case PreviewState::kPending:
+      return v1::PreviewSummary::PENDING;
+    case PreviewState::kRunning:
+      return v1::PreviewSummary::RUNNING;
+    case PreviewState::kDone:
+      return v1::PreviewSummary::DONE;
+    case PreviewState::kFailed:
+      return v1::PreviewSummary::FAILED;
+    case PreviewState::kOutdated:
+      return v1::PreviewSummary::OUTDATED;
+  }
+  return v1::PreviewSummary::STATE_UNSPECIFIED;
+}
+
+v1::PreviewSummary to_preview_summary(const PreviewView& view) {
+  v1::PreviewSummary summary;
+  summary.set_state(to_preview_state(view.state));
+  summary.set_reason(view.reason);
+  summary.set_wall_s(view.wall_s);
+  summary.set_steps(view.report.step);
+  summary.set_time_s(view.report.time);
+  summary.set_hexahedra(static_cast<uint32_t>(view.n_hexahedra));
+  summary.set_film_cells(static_cast<uint32_t>(view.n_film_cells));
+  summary.set_skin_max_displacement_mm(view.report.skin_max_displacement * kMillimetrePerMetre);
+  summary.set_skin_volume_change_ml(view.report.skin_volume_change * kMillilitrePerCubicMetre);
+  if (!view.difference) return summary;
+  summary.set_difference_max_mm(view.difference->max * kMillimetrePerMetre);
+  summary.set_difference_rms_mm(view.difference->rms * kMillimetrePerMetre);
+  summary.set_difference_volume_ml(view.difference->volume * kMillilitrePerCubicMetre);
+  return summary;
+}
+
 }  // namespace
 
 v1::ModelReport to_model_report(const simulation::FaceModel& model) {
@@ -124,6 +158,7 @@ v1::Summary to_summary(const SessionView& view) {
   summary.set_injection_work_mj(step.injection_work * kMillijoulePerJoule);
   summary.set_film_dissipation_mj(step.film_dissipation * kMillijoulePerJoule);
   summary.set_closed_cells(static_cast<uint32_t>(step.closed_cells));
+  if (view.preview) *summary.mutable_preview() = to_preview_summary(*view.preview);
   for (const simulation::LigamentReport& report : view.ligaments) {
     v1::LigamentSummary* ligament = summary.add_ligaments();
     ligament->set_name(report.name);

@@ -48,6 +48,7 @@ absl::StatusOr<std::shared_ptr<Session>> make_session(Backend& backend, const Si
   options.id = record.id;
   options.epoch = static_cast<uint64_t>(record.create_time_us);
   options.real_time = message.pace() == v1::REAL_TIME;
+  options.preview = message.preview();
   return std::make_shared<Session>(options, *std::move(simulation), backend.workers, backend.keeper);
 }
 

@@ -54,7 +54,8 @@ struct Frame {
   uint64_t epoch = 0;
   uint64_t sequence = 0;
   double time_s = 0.0;
-  bool end = false;  ///< nothing comes after it
+  bool end = false;      ///< nothing comes after it
+  bool preview = false;  ///< the settled shape as a coarse model foresees it
   std::vector<simulation::FrameField> fields;
   EncodingCache encodings;
 

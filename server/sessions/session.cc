@@ -49,6 +49,7 @@ Session::Session(SessionOptions options, std::unique_ptr<simulation::Simulation>
   view_.n_hexahedra = simulation_->n_hexahedra();
   view_.n_film_cells = simulation_->n_film_cells();
   view_.n_dofs = simulation_->n_dofs();
+  if (options_.preview) view_.preview.emplace();
   update_view();
 }
 
@@ -161,6 +162,7 @@ void Session::inject(simulation::InjectionSpec injection, Reply reply) {
             [this, &injection] {
               const absl::Status done = simulation_->inject(injection);
               if (done.ok()) {
+                note_changed_plan();
                 spdlog::info("simulations/{} takes an injection at step {}", options_.id, view_.report.step);
               }
               return done;
@@ -203,9 +205,10 @@ WorkerPool::Next Session::take_turn() {
 WorkerPool::Next Session::advance_slice() {
   const Clock::time_point begin = Clock::now();
   while (view_.state == SimulationState::kRunning) {
-    if (options_.real_time && due_time() > Clock::now()) return {WorkerPool::Next::kLater, due_time()};
+    const bool waits = options_.real_time && !preview_is_due() && due_time() > Clock::now();
+    if (waits) return {WorkerPool::Next::kLater, due_time()};
     try {
-      advance_one_step();
+      preview_is_due() ? advance_preview() : advance_one_step();
     } catch (const std::exception& error) {
       finish(SimulationState::kFailed, absl::StrCat("step ", view_.report.step + 1, ": ", error.what()));
     }
@@ -279,6 +282,8 @@ void Session::finish(SimulationState state, const std::string& reason) {
   }
   viewers_.clear();
   simulation_ = nullptr;
+  preview_ = nullptr;
+  preview_frame_ = nullptr;
   give_memory_back();
 }
 
@@ -286,6 +291,7 @@ void Session::conclude() {
   spdlog::info("simulations/{} is {} after {} steps, {:.3f} s simulated{}{}", options_.id, state_name(view_.state),
                view_.report.step, view_.report.time, view_.reason.empty() ? "" : ": ", view_.reason);
   flush_series();
+  judge_preview();
   const SessionView view = full_view();
   {
     const std::lock_guard lock(view_mutex_);

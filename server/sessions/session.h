@@ -5,10 +5,12 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/simulation/preview.h"
 #include "core/simulation/simulation.h"
 #include "server/sessions/frame.h"
 #include "server/sessions/viewer.h"
@@ -23,6 +25,25 @@ struct SeriesEntry {
   double wall_ms = 0.0;
 };
 
+/// kOutdated: it was shown, then the plan changed.
+enum class PreviewState { kPending, kRunning, kDone, kFailed, kOutdated };
+
+inline const char* preview_state_name(PreviewState state) {
+  constexpr const char* kNames[] = {"PENDING", "RUNNING", "DONE", "FAILED", "OUTDATED"};
+  return kNames[static_cast<int>(state)];
+}
+
+/// The preview of a simulation.
+struct PreviewView {
+  PreviewState state = PreviewState::kPending;
+  std::string reason;  ///< why it came to rest, failed or is outdated
+  simulation::StepReport report;
+  int n_hexahedra = 0;
+  int n_film_cells = 0;
+  double wall_s = 0.0;
+  std::optional<simulation::PreviewDifference> difference;  ///< once the simulation has its result
+};
+
 /// A simulation as it is between two steps.
 struct SessionView {
   SimulationState state = SimulationState::kReady;
@@ -33,9 +54,10 @@ struct SessionView {
   int n_hexahedra = 0;
   int n_film_cells = 0;
   int n_dofs = 0;
-  double wall_s = 0.0;          ///< spent RUNNING
+  double wall_s = 0.0;          ///< spent RUNNING, but for the preview
   double step_ms_median = 0.0;  ///< computing time of a step
   std::string state_hash;       ///< empty in a cached view of a live simulation
+  std::optional<PreviewView> preview;
 };
 
 class Session;
@@ -54,6 +76,7 @@ struct SessionOptions {
   std::string id;
   uint64_t epoch = 0;
   bool real_time = false;  ///< at most one simulated second a second
+  bool preview = false;    ///< a coarse model's settled shape first
 };
 
 /// A simulation that lives in the daemon, not in a connection: steps on the worker pool while RUNNING, takes commands
@@ -126,6 +149,14 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   std::shared_ptr<const Frame> make_frame(const std::vector<std::string>& meshes, bool end);
   void show_to_viewers();
   Clock::time_point due_time() const;
+  bool preview_is_due() const;
+  void advance_preview();
+  void advance_preview(PreviewView& view);
+  std::shared_ptr<const Frame> make_preview_frame() const;
+  void conclude_preview();
+  void note_changed_plan();
+  void judge_preview();
+  void note_preview(const PreviewView& preview);
 
   const SessionOptions options_;
   WorkerPool& workers_;
@@ -143,7 +174,9 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   double wall_before_s_ = 0.0;
   std::vector<std::shared_ptr<Viewer>> viewers_;
   std::shared_ptr<const Topology> topology_;
-  std::shared_ptr<const Frame> last_frame_;  ///< once ended
+  std::shared_ptr<const Frame> last_frame_;       ///< once ended
+  std::unique_ptr<simulation::Preview> preview_;  ///< under way
+  std::shared_ptr<const Frame> preview_frame_;    ///< once it is done
 
   mutable std::mutex view_mutex_;
   SessionView view_;

@@ -16,6 +16,7 @@ void Session::watch(std::shared_ptr<Viewer> viewer) {
       if (const absl::Status chosen = viewer->choose_meshes(*meshes); !chosen.ok()) return viewer->close(chosen);
       viewer->show_topology(meshes);
       if (last_frame_ != nullptr) return viewer->offer(last_frame_);
+      if (preview_frame_ != nullptr) viewer->offer(preview_frame_);
       viewer->offer(make_frame(viewer->meshes(), false));
       viewers_.push_back(viewer);
     } catch (const std::exception& error) {

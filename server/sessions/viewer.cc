@@ -50,12 +50,10 @@ void Viewer::offer(std::shared_ptr<const Frame> frame) {
   {
     const std::lock_guard lock(mutex_);
     if (end_) return;
-    if (options_.interval_s > 0.0) {
+    if (options_.interval_s > 0.0 && !frame->preview) {
       next_due_s_ = (std::floor(frame->time_s / options_.interval_s + 1e-9) + 1.0) * options_.interval_s;
     }
-    const bool seen = frame->epoch == options_.seen_epoch && frame->sequence <= options_.seen_sequence;
-    // The last frame says that it is the last one, even to who saw the same state before.
-    if (seen && !frame->end) return;
+    if (was_seen(*frame)) return;
     const bool end = frame->end;
     queue_frame(std::move(frame));
     if (end && !end_) end_ = absl::OkStatus();
@@ -63,12 +61,24 @@ void Viewer::offer(std::shared_ptr<const Frame> frame) {
   wake_();
 }
 
+/// A preview was seen by who saw a step after it. The last frame says that it is the last one, even to who saw the same
+/// state before.
+bool Viewer::was_seen(const Frame& frame) const {
+  if (frame.epoch != options_.seen_epoch || frame.end) return false;
+  return frame.preview ? frame.sequence < options_.seen_sequence : frame.sequence <= options_.seen_sequence;
+}
+
+/// A newer frame takes the place of an older one, but not of the preview: there is only one.
+void Viewer::skip_waiting_frames() {
+  const auto is_skipped = [](const std::shared_ptr<const Frame>& frame) { return !frame->preview; };
+  for (const auto& frame : frames_) queued_bytes_ -= is_skipped(frame) ? frame->size_bytes() : 0;
+  skipped_ += std::erase_if(frames_, is_skipped);
+}
+
 void Viewer::queue_frame(std::shared_ptr<const Frame> frame) {
   const size_t bytes = frame->size_bytes();
   if (options_.delivery == Delivery::kLatest) {
-    skipped_ += frames_.size();
-    frames_.clear();
-    queued_bytes_ = 0;
+    if (!frame->preview) skip_waiting_frames();
   } else if (!frames_.empty() && queued_bytes_ + bytes > options_.max_queued_bytes) {
     end_ = absl::ResourceExhaustedError(absl::StrCat("this viewer has ", frames_.size(), " frames (", queued_bytes_,
                                                      " bytes) waiting, the bound is ", options_.max_queued_bytes,

@@ -41,8 +41,9 @@ using ToSend = std::variant<std::monostate, TopologyToSend, FrameToSend, EndOfSt
 /// What one watcher has yet to be sent. The session puts in and never waits; the stream takes out as fast as its client
 /// reads.
 ///
-/// kLatest keeps one frame: a newer one takes its place and the skipped one is counted. kEvery keeps all up to a number
-/// of bytes; one frame more ends the stream with RESOURCE_EXHAUSTED. Checked by tests/unit/server/viewer_test.cc.
+/// kLatest keeps one frame, and the preview beside it: a newer one takes its place and the skipped one is counted.
+/// kEvery keeps all up to a number of bytes; one frame more ends the stream with RESOURCE_EXHAUSTED. Checked by
+/// tests/unit/server/viewer_test.cc.
 class Viewer {
  public:
   /// `wake` is called, on any thread and without a lock of this class, when there is something to take; it must not
@@ -65,6 +66,8 @@ class Viewer {
   ToSend take();
 
  private:
+  bool was_seen(const Frame& frame) const;
+  void skip_waiting_frames();
   void queue_frame(std::shared_ptr<const Frame> frame);
 
   const ViewerOptions options_;

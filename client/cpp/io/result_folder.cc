@@ -13,7 +13,7 @@ namespace {
 
 /// Only names of our own making: a folder may hold other things.
 bool is_frame_file(const std::string& name) {
-  static const std::regex pattern(R"((skin|scan|tissue|film(_.+)?)(_\d{4,}\.vt[pu]|\.pvd))");
+  static const std::regex pattern(R"((skin|scan|tissue|film(_.+)?)(_\d{4,}\.vt[pu]|_preview\.vtp|\.pvd))");
   return std::regex_match(name, pattern);
 }
 
@@ -63,6 +63,17 @@ absl::Status ResultFolder::write_frame(double time_s, const std::vector<Array>& 
   }
   last_time_s_ = time_s;
   ++frames_;
+  return absl::OkStatus();
+}
+
+absl::Status ResultFolder::write_preview(const std::vector<Array>& fields) const {
+  const auto views = mesh_views(meshes_, fields);
+  if (!views.ok()) return views.status();
+  for (const MeshView& view : *views) {
+    if (view.fields.empty()) continue;
+    const std::string name = absl::StrCat(stem_of(view.name), "_preview", mesh_extension(view));
+    if (auto status = write_mesh(path_ / name, view); !status.ok()) return status;
+  }
   return absl::OkStatus();
 }
 

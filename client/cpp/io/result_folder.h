@@ -14,7 +14,8 @@ namespace lipofill::client {
 
 /// The folder a run leaves behind: skin_0000.vtp, film_0000.vtp (film_<name>_0000.vtp when there are several films),
 /// tissue_0000.vtu, scan_0000.vtp where the model has a scan, and a .pvd for each that ParaView opens as a series over
-/// time. Checked by tests/unit/client/result_folder_test.cc.
+/// time; skin_preview.vtp and scan_preview.vtp of a run with a preview. Checked by
+/// tests/unit/client/result_folder_test.cc.
 class ResultFolder {
  public:
   explicit ResultFolder(std::filesystem::path path) : path_(std::move(path)) {}
@@ -31,6 +32,9 @@ class ResultFolder {
 
   /// Writes one frame, a file a mesh, under the next number. A frame at the time of the last one is not written twice.
   absl::Status write_frame(double time_s, const std::vector<Array>& fields);
+
+  /// Writes the preview's meshes, those it has fields on, beside the series.
+  absl::Status write_preview(const std::vector<Array>& fields) const;
 
   int frames() const { return frames_; }
 

@@ -51,6 +51,8 @@ TEST_F(BadInputTest, ValuesTheDaemonRefuses) {
   expect_failure("lipofill run step.json --out out --spawn --quiet", 2, "time.max_injection_step_ms");
   write_plan("goal.json", "/simulation/time/goal", "PERFECT");
   expect_failure("lipofill plan check goal.json", 2, "goal");
+  write_plan("preview.json", "/simulation/preview", "perhaps");
+  expect_failure("lipofill plan check preview.json", 2, "preview");
   const CommandResult result = run("lipofill run nu.json --out out --spawn --json");
   EXPECT_EQ(result.exit_code, 2);
   const size_t begin = result.errors.find("{\n");

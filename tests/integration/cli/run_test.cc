@@ -104,6 +104,40 @@ TEST_F(RunTest, FastGivesTheSettledShapeInFewSteps) {
   EXPECT_NEAR(fast["skin_max_displacement_mm"].get<double>(), watched["skin_max_displacement_mm"].get<double>(), 0.05);
 }
 
+TEST_F(RunTest, PreviewIsToldFirstAndMeasuredInTheEnd) {
+  write_plan("settles.json", "/simulation/time",
+             {{"step_ms", 10}, {"max_step_ms", 100}, {"end_s", 300}, {"settle_skin_speed_mm_per_s", 0.05}});
+  const std::string options = " --spawn --discard --no-picture --interval-ms 0";
+  const auto plain = answer_of("lipofill run settles.json --out a --quiet" + options);
+  EXPECT_TRUE(plain["preview"].is_null());
+  const CommandResult result = run("lipofill run settles.json --out b --preview" + options);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.errors, HasSubstr("preview: skin moved "));
+  EXPECT_THAT(result.output, HasSubstr("mm from the result at most"));
+  EXPECT_TRUE(exists("b/skin_preview.vtp"));
+  const auto summary = read_json("b/summary.json");
+  EXPECT_EQ(summary["state_hash"], plain["state_hash"]) << "the preview changes nothing";
+  EXPECT_EQ(summary["preview"]["state"], "DONE");
+  EXPECT_LT(summary["preview"]["difference_max_mm"].get<double>(), summary["skin_max_displacement_mm"].get<double>());
+  EXPECT_LE(summary["preview"]["difference_rms_mm"].get<double>(),
+            summary["preview"]["difference_max_mm"].get<double>());
+}
+
+TEST_F(RunTest, APreviewThatCannotBeIsToldAndTheRunGoesOn) {
+  // A zone between the centres of the coarse film's cells.
+  auto plan = read_json("plan.json");
+  plan["simulation"]["films"][0]["zones"][0]["box"] = {
+      {"xi_min", 0.38}, {"xi_max", 0.45}, {"eta_min", 0.16}, {"eta_max", 0.84}};
+  plan["simulation"]["injections"][0]["site"]["chart"]["xi"] = 0.42;
+  plan["simulation"]["injections"][0]["volume_ml"] = 0.05;
+  plan["simulation"].erase("probes");
+  write("narrow.json", plan.dump());
+  const CommandResult result = run("lipofill run narrow.json --out out --preview --spawn --discard --no-picture");
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("preview      FAILED, the coarse model cannot hold the plan"));
+  EXPECT_EQ(read_json("out/summary.json")["state"], "FINISHED");
+}
+
 TEST_F(RunTest, DrawsAndEvaluatesTheFolder) {
   write_plane("goal.obj", 1.0);
   const CommandResult made = run("lipofill run plan.json --out out --spawn");

@@ -111,6 +111,45 @@ TEST_F(RunTest, GivesTheSameBytesBesideOthersAndUnderWatch) {
   }
 }
 
+TEST_F(RunTest, APreviewComesFirstAndItsDifferenceLast) {
+  create(0.3, "plain");
+  v1::SimulationSpec spec = square_plan(model_.name(), 0.3);
+  spec.set_preview(true);
+  v1::Simulation simulation;
+  ASSERT_TRUE(create_simulation(spec, "x", false, simulation).ok());
+  EXPECT_EQ(simulation.summary().preview().state(), v1::PreviewSummary::PENDING);
+  Watcher watcher(*channel_, watch_request("simulations/x", v1::WatchRequest::EVERY));
+  SeenFrame frame;
+  ASSERT_TRUE(watcher.next(frame));
+  EXPECT_FALSE(frame.slice.preview());
+  const size_t skin_bytes = frame.bytes.at("skin.displacement").size();
+  ASSERT_TRUE(start("simulations/x").ok());
+  SeenFrame preview;
+  ASSERT_TRUE(watcher.next(preview));
+  EXPECT_TRUE(preview.slice.preview());
+  EXPECT_EQ(preview.slice.sequence(), 0u);
+  EXPECT_EQ(preview.slice.topology_hash(), frame.slice.topology_hash());
+  EXPECT_EQ(preview.bytes.at("skin.displacement").size(), skin_bytes);
+  EXPECT_EQ(preview.bytes.count("film/plane.thickness"), 0u) << "the skin only";
+  ASSERT_TRUE(watcher.next(frame));
+  EXPECT_EQ(frame.slice.sequence(), 1u);
+  EXPECT_FALSE(frame.slice.preview());
+  watcher.drain();
+
+  const v1::Simulation ended = await_end("simulations/x");
+  EXPECT_EQ(ended.state(), v1::Simulation::FINISHED) << ended.reason();
+  EXPECT_EQ(ended.summary().state_hash(), await_end("simulations/plain").summary().state_hash());
+  const v1::PreviewSummary& told = ended.summary().preview();
+  EXPECT_EQ(told.state(), v1::PreviewSummary::DONE) << told.reason();
+  EXPECT_GT(told.steps(), 0u);
+  EXPECT_LT(told.steps(), ended.summary().steps());
+  EXPECT_GT(told.skin_max_displacement_mm(), 0.0);
+  EXPECT_TRUE(told.has_difference_max_mm());
+  EXPECT_LT(told.difference_max_mm(), ended.summary().skin_max_displacement_mm());
+  restart();
+  EXPECT_EQ(get_simulation("simulations/x").summary().preview().SerializeAsString(), told.SerializeAsString());
+}
+
 TEST_F(RunTest, ResultsSurviveARestart) {
   create(0.2, "x");
   const v1::Simulation before = await_end("simulations/x");

@@ -89,6 +89,29 @@ TEST_F(FrameWatcherTest, TakesUpABrokenStreamAfterTheLastFrame) {
   EXPECT_EQ(service_.requests[1].known_topology_hash(), "hash");
 }
 
+TEST_F(FrameWatcherTest, TellsThePreviewFromASteps) {
+  service_.streams = {[](const v1::WatchRequest&, Writer* writer) {
+    send_frame(writer, 0, false);
+    v1::WatchResponse preview;
+    preview.mutable_frame()->set_epoch(9);
+    preview.mutable_frame()->set_time_s(40.0);
+    preview.mutable_frame()->set_preview(true);
+    preview.mutable_frame()->set_last(true);
+    writer->Write(preview);
+    send_frame(writer, 1, true);
+    return grpc::Status::OK;
+  }};
+  const LocalServer server(&service_);
+  std::vector<bool> previews;
+  WatchHandlers noting = handlers();
+  noting.on_frame = [&previews](const Frame& frame) {
+    previews.push_back(frame.preview);
+    return absl::OkStatus();
+  };
+  EXPECT_TRUE(watch(Connection(server.address()), {}, noting).ok());
+  EXPECT_THAT(previews, ElementsAre(false, true, false));
+}
+
 TEST_F(FrameWatcherTest, AnErrorOfTheSimulationIsNotRetried) {
   service_.streams = {
       [](const v1::WatchRequest&, Writer*) { return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such simulation"); }};

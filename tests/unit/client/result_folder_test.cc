@@ -37,6 +37,21 @@ TEST_F(ResultFolderTest, NumbersFramesAndCollectsThem) {
   EXPECT_EQ(last_frame_file(folder.path(), "scan"), std::filesystem::path());
 }
 
+TEST_F(ResultFolderTest, WritesThePreviewBesideTheSeries) {
+  ResultFolder folder(folder_);
+  ASSERT_TRUE(folder.prepare().ok());
+  folder.set_meshes(join(join(square_mesh("skin"), square_mesh("film/deep")), cube_mesh()));
+  ASSERT_TRUE(
+      folder.write_preview({float_field("skin.pressure", "Pa", ArrayLocation::kPoint, 4, 1, {1, 2, 3, 4})}).ok());
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "skin_preview.vtp"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "film_preview.vtp")) << "it has no fields there";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "skin.pvd"));
+  EXPECT_EQ(folder.frames(), 0);
+  EXPECT_EQ(last_frame_file(folder_, "skin"), std::filesystem::path());
+  ASSERT_TRUE(folder.prepare().ok());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "skin_preview.vtp")) << "of an earlier run";
+}
+
 TEST_F(ResultFolderTest, SeveralFilmsGoByName) {
   ResultFolder folder(folder_);
   ASSERT_TRUE(folder.prepare().ok());

@@ -37,14 +37,14 @@ TEST(SummaryJson, HasTheKeysOthersRelyOn) {
   const auto json = nlohmann::ordered_json::parse(summary_json("jaw_angle", sample()));
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(
-      keys, ElementsAre("plan", "state", "reason", "steps", "time_s", "wall_s", "step_ms_median", "hexahedra",
-                        "film_cells", "dofs", "injected_ml", "film_volume_ml", "gap_volume_ml",
-                        "film_volume_relative_error", "gap_volume_relative_error", "max_pressure_pa", "min_pressure_pa",
-                        "mean_pressure_pa", "max_thickness_mm", "skin_max_displacement_mm", "skin_volume_change_ml",
-                        "min_scaled_jacobian", "state_hash", "zones", "rejected_steps", "error_estimate_mm",
-                        "settling_error_mm", "void_volume_ml", "undelivered_ml", "elastic_energy_mj",
-                        "kinetic_energy_mj", "injection_work_mj", "film_dissipation_mj", "closed_cells", "ligaments"));
+  EXPECT_THAT(keys, ElementsAre("plan", "state", "reason", "steps", "time_s", "wall_s", "step_ms_median", "hexahedra",
+                                "film_cells", "dofs", "injected_ml", "film_volume_ml", "gap_volume_ml",
+                                "film_volume_relative_error", "gap_volume_relative_error", "max_pressure_pa",
+                                "min_pressure_pa", "mean_pressure_pa", "max_thickness_mm", "skin_max_displacement_mm",
+                                "skin_volume_change_ml", "min_scaled_jacobian", "state_hash", "zones", "rejected_steps",
+                                "error_estimate_mm", "settling_error_mm", "void_volume_ml", "undelivered_ml",
+                                "elastic_energy_mj", "kinetic_energy_mj", "injection_work_mj", "film_dissipation_mj",
+                                "closed_cells", "ligaments", "preview"));
   keys.clear();
   for (const auto& [key, value] : json["zones"][0].items()) keys.push_back(key);
   EXPECT_THAT(keys, ElementsAre("name", "volume_ml", "mean_pressure_pa", "max_thickness_mm"));
@@ -55,6 +55,33 @@ TEST(SummaryJson, HasTheKeysOthersRelyOn) {
   EXPECT_TRUE(json["min_pressure_pa"].is_null());
   EXPECT_TRUE(json["settling_error_mm"].is_null());
   EXPECT_EQ(json["ligaments"][0]["broken_points"], 1);
+  EXPECT_TRUE(json["preview"].is_null());
+}
+
+TEST(Preview, IsToldWithItsDifferenceOnceThatIsKnown) {
+  v1::Simulation simulation = sample();
+  v1::PreviewSummary* preview = simulation.mutable_summary()->mutable_preview();
+  preview->set_state(v1::PreviewSummary::DONE);
+  preview->set_steps(24);
+  preview->set_wall_s(0.25);
+  preview->set_hexahedra(620);
+  preview->set_skin_max_displacement_mm(4.25);
+  auto json = nlohmann::ordered_json::parse(summary_json("jaw_angle", simulation));
+  EXPECT_EQ(json["preview"]["state"], "DONE");
+  EXPECT_EQ(json["preview"]["steps"], 24);
+  EXPECT_TRUE(json["preview"]["difference_max_mm"].is_null());
+  EXPECT_THAT(summary_text("jaw_angle", simulation), HasSubstr("  preview      skin moved 4.25 mm at most"));
+  EXPECT_THAT(summary_text("jaw_angle", simulation), ::testing::Not(HasSubstr("from the result")));
+  preview->set_difference_max_mm(0.5);
+  preview->set_difference_rms_mm(0.125);
+  preview->set_difference_volume_ml(-0.25);
+  json = nlohmann::ordered_json::parse(summary_json("jaw_angle", simulation));
+  EXPECT_EQ(json["preview"]["difference_rms_mm"], 0.125);
+  EXPECT_THAT(summary_text("jaw_angle", simulation),
+              HasSubstr("0.50 mm from the result at most, 0.12 mm rms; -0.25 mL of volume"));
+  preview->set_state(v1::PreviewSummary::FAILED);
+  preview->set_reason("too narrow");
+  EXPECT_EQ(preview_text(*preview), "FAILED, too narrow");
 }
 
 TEST(SummaryText, IsForPeople) {

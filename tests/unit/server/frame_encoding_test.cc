@@ -54,6 +54,19 @@ TEST(FrameEncoding, GoesRoundWithTheSkippedFrames) {
   }
 }
 
+TEST(FrameEncoding, MarksAPreviewAndLeavesOutMeshesItHasNot) {
+  Frame frame;
+  frame.preview = true;
+  frame.fields.push_back({"skin", "pressure", "Pa", simulation::FieldLocation::kPoint, 1, {1.0f}});
+  const auto encoded = encode_shared(frame, {"film/deep", "skin"}, "hash");
+  ASSERT_EQ(encoded->messages.size(), 1u);
+  const v1::FrameSlice slice = receive(encoded->messages[0], 0);
+  EXPECT_TRUE(slice.preview());
+  EXPECT_TRUE(slice.last());
+  ASSERT_EQ(slice.fields_size(), 1);
+  EXPECT_EQ(slice.fields(0).name(), "skin.pressure");
+}
+
 TEST(FrameEncoding, SharesOneEncodingASetOfMeshes) {
   const auto made = big_frame(2);
   const Frame& frame = *made;

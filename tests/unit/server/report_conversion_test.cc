@@ -38,6 +38,40 @@ TEST(ReportConversion, SummariesAreInTheUnitsOfTheirNames) {
   EXPECT_EQ(summary.state_hash(), "hash");
 }
 
+TEST(ReportConversion, ThePreviewIsToldWhereThereIsOne) {
+  EXPECT_FALSE(to_summary(view()).has_preview());
+  SessionView previewed = view();
+  PreviewView& preview = previewed.preview.emplace();
+  EXPECT_EQ(to_summary(previewed).preview().state(), v1::PreviewSummary::PENDING);
+  EXPECT_FALSE(to_summary(previewed).preview().has_difference_max_mm());
+  preview.state = PreviewState::kDone;
+  preview.reason = "at rest";
+  preview.report.step = 24;
+  preview.report.skin_max_displacement = 0.003;
+  preview.report.skin_volume_change = 1.5e-6;
+  preview.n_hexahedra = 620;
+  preview.n_film_cells = 60;
+  preview.wall_s = 0.25;
+  preview.difference = simulation::PreviewDifference{0.4e-3, 0.1e-3, -0.02e-6};
+  const v1::PreviewSummary summary = to_summary(previewed).preview();
+  EXPECT_EQ(summary.state(), v1::PreviewSummary::DONE);
+  EXPECT_EQ(summary.reason(), "at rest");
+  EXPECT_EQ(summary.steps(), 24u);
+  EXPECT_EQ(summary.hexahedra(), 620u);
+  EXPECT_EQ(summary.film_cells(), 60u);
+  EXPECT_DOUBLE_EQ(summary.wall_s(), 0.25);
+  EXPECT_DOUBLE_EQ(summary.skin_max_displacement_mm(), 3.0);
+  EXPECT_DOUBLE_EQ(summary.skin_volume_change_ml(), 1.5);
+  EXPECT_DOUBLE_EQ(summary.difference_max_mm(), 0.4);
+  EXPECT_DOUBLE_EQ(summary.difference_rms_mm(), 0.1);
+  EXPECT_DOUBLE_EQ(summary.difference_volume_ml(), -0.02);
+  for (const auto state : {PreviewState::kPending, PreviewState::kRunning, PreviewState::kDone, PreviewState::kFailed,
+                           PreviewState::kOutdated}) {
+    preview.state = state;
+    EXPECT_EQ(v1::PreviewSummary::State_Name(to_summary(previewed).preview().state()), preview_state_name(state));
+  }
+}
+
 TEST(ReportConversion, SeriesRowsAreInTheUnitsOfTheirNames) {
   const v1::SeriesRow row = to_series_row({view().report, 12.5});
   EXPECT_DOUBLE_EQ(row.step_ms(), 10.0);

@@ -53,6 +53,44 @@ TEST(Viewer, LatestSkipsAndCounts) {
   EXPECT_EQ(second.skipped, 0u);
 }
 
+std::shared_ptr<const Frame> preview(uint64_t sequence, double time_s) {
+  auto made = std::make_shared<Frame>();
+  made->epoch = 5;
+  made->sequence = sequence;
+  made->time_s = time_s;
+  made->preview = true;
+  return made;
+}
+
+TEST(Viewer, ThePreviewIsNeverSkippedAndDoesNotCountAsTime) {
+  ViewerOptions options;
+  options.interval_s = 1.0;
+  Viewer viewer(options, [] {});
+  viewer.offer(frame(0, 0.0));
+  viewer.offer(preview(0, 40.0));
+  EXPECT_FALSE(viewer.wants(0.5));
+  EXPECT_TRUE(viewer.wants(1.0)) << "40 s are those of another model";
+  viewer.offer(frame(100, 1.0));
+  viewer.offer(frame(200, 2.0));
+  EXPECT_TRUE(take_frame(viewer).frame->preview);
+  const FrameToSend next = take_frame(viewer);
+  EXPECT_EQ(next.frame->sequence, 200u);
+  EXPECT_TRUE(has_nothing(viewer));
+}
+
+TEST(Viewer, ThePreviewIsNotShownAgainToWhoSawAStepAfterIt) {
+  ViewerOptions options;
+  options.seen_epoch = 5;
+  options.seen_sequence = 0;
+  Viewer first(options, [] {});
+  first.offer(preview(0, 40.0));
+  EXPECT_TRUE(take_frame(first).frame->preview) << "seeing the start is not seeing the preview";
+  options.seen_sequence = 3;
+  Viewer later(options, [] {});
+  later.offer(preview(0, 40.0));
+  EXPECT_TRUE(has_nothing(later));
+}
+
 TEST(Viewer, EveryKeepsAllInOrder) {
   ViewerOptions options;
   options.delivery = Delivery::kEvery;

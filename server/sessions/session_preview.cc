@@ -77,7 +77,7 @@ void Session::conclude_preview() {
   }
 }
 
-/// A preview under way begins anew; one that was shown stays, but is of another plan.
+/// A preview under way begins anew; one that was shown is of another plan, and not shown to who comes later.
 void Session::note_changed_plan() {
   if (!view_.preview) return;
   PreviewView view = *view_.preview;
@@ -87,6 +87,7 @@ void Session::note_changed_plan() {
   } else if (view.state == PreviewState::kDone) {
     view.state = PreviewState::kOutdated;
     view.reason = "an injection was added after it";
+    preview_frame_ = nullptr;
   }
   note_preview(view);
 }

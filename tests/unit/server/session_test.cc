@@ -3,115 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <future>
+#include <algorithm>
 #include <thread>
 
 #include "server/sessions/session_manager.h"
+#include "tests/unit/server/session_fixture.h"
 
 namespace lipofill::server {
 namespace {
 
 using ::testing::HasSubstr;
-
-/// Keeps in memory what a store would.
-class MemorySink : public SessionSink {
- public:
-  absl::Status append_series(const std::string&, const std::vector<SeriesEntry>& rows) override {
-    const std::lock_guard lock(mutex);
-    for (const SeriesEntry& row : rows) steps.push_back(row.report.step);
-    return absl::OkStatus();
-  }
-  absl::Status ended(const std::string& id, const SessionView& view, const Topology&, const Frame& frame) override {
-    const std::lock_guard lock(mutex);
-    views[id] = view;
-    EXPECT_TRUE(frame.end);
-    return absl::OkStatus();
-  }
-  std::mutex mutex;
-  std::vector<uint64_t> steps;
-  std::map<std::string, SessionView> views;
-};
-
-/// A film with a wall of its own: steps of microseconds.
-std::unique_ptr<simulation::Simulation> make_simulation(double end_s) {
-  simulation::FaceModelSpec face;
-  face.region = geometry::SquareSpec{0.04, 0.04};
-  face.n_xi = face.n_eta = 4;
-  const auto model = simulation::build_face_model(face, [](double, const char*) { return true; });
-  EXPECT_TRUE(model.ok()) << model.status();
-  simulation::SimulationSpec spec;
-  simulation::FilmSpec film;
-  film.name = "plane";
-  film.n_xi = film.n_eta = 3;
-  film.zones = {{"all", simulation::ChartBox{}}};
-  film.wall = simulation::FilmWallKind::kWinkler;
-  film.wall_stiffness = 1e7;
-  spec.films = {film};
-  spec.injections = {{"all", 1e-7, 1e-6, 0.0, std::nullopt}};
-  spec.settle_skin_speed = 0.0;
-  spec.end = end_s;
-  auto made = simulation::Simulation::create(*model, spec);
-  EXPECT_TRUE(made.ok()) << made.status();
-  return *std::move(made);
-}
-
-/// Skin over a film, injected for a tenth of a second and at rest some seconds later.
-std::unique_ptr<simulation::Simulation> make_soft_simulation() {
-  simulation::FaceModelSpec face;
-  face.region = geometry::SquareSpec{0.04, 0.04};
-  face.n_xi = face.n_eta = 16;
-  face.layers = {{"skin", {geometry::ScalarField::constant(3e-3), 1}, {6e4, 0.45, 1100.0}}};
-  const auto model = simulation::build_face_model(face, [](double, const char*) { return true; });
-  EXPECT_TRUE(model.ok()) << model.status();
-  simulation::SimulationSpec spec;
-  simulation::FilmSpec film;
-  film.name = "plane";
-  film.below_layer = "skin";
-  film.n_xi = film.n_eta = 8;
-  film.rest_thickness = geometry::ScalarField::constant(0.5e-3);
-  film.zones = {{"all", simulation::ChartBox{0.2, 0.8, 0.2, 0.8}}};
-  spec.films = {film};
-  spec.injections = {{"all", 1e-7, 1e-6, 0.0, std::nullopt}};
-  spec.settle_skin_speed = 0.05e-3;
-  spec.max_step = 0.5;
-  auto made = simulation::Simulation::create(*model, spec);
-  EXPECT_TRUE(made.ok()) << made.status();
-  return *std::move(made);
-}
-
-class SessionTest : public ::testing::Test {
- protected:
-  std::shared_ptr<Session> session(const std::string& id, double end_s, bool real_time = false) {
-    return std::make_shared<Session>(SessionOptions{id, 7, real_time}, make_simulation(end_s), workers_, sink_);
-  }
-  std::shared_ptr<Session> soft_session(const std::string& id, bool preview) {
-    SessionOptions options{id, 7, false};
-    options.preview = preview;
-    return std::make_shared<Session>(options, make_soft_simulation(), workers_, sink_);
-  }
-  /// Gives a command and waits for its answer.
-  template <typename Command>
-  absl::StatusOr<SessionView> ask(Command&& command) {
-    auto answer = std::make_shared<std::promise<absl::StatusOr<SessionView>>>();
-    command([answer](absl::StatusOr<SessionView> view) { answer->set_value(std::move(view)); });
-    return answer->get_future().get();
-  }
-  absl::StatusOr<SessionView> start(Session& s) {
-    return ask([&s](auto reply) { s.start(reply); });
-  }
-  absl::StatusOr<SessionView> pause(Session& s) {
-    return ask([&s](auto reply) { s.pause(reply); });
-  }
-  absl::StatusOr<SessionView> inspect(Session& s) {
-    return ask([&s](auto reply) { s.inspect(reply); });
-  }
-  void await_end(const Session& s) {
-    while (!has_ended(s.cached_view().state)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-
-  MemorySink sink_;
-  WorkerPool workers_{2};
-};
 
 TEST_F(SessionTest, RunsToTheEndAndKeepsEveryRow) {
   const auto s = session("a", 12.0);
@@ -196,85 +97,6 @@ TEST_F(SessionTest, ShowsFramesUntilTheEndAndAfterIt) {
   ASSERT_TRUE(inspect(*s).ok()) << "commands are carried out in order";
   EXPECT_TRUE(std::holds_alternative<TopologyToSend>(late->take()));
   EXPECT_TRUE(std::get<FrameToSend>(late->take()).frame->end);
-}
-
-TEST_F(SessionTest, ShowsThePreviewFirstAndSaysHowFarItWas) {
-  const auto plain = soft_session("plain", false);
-  const auto s = soft_session("a", true);
-  EXPECT_FALSE(plain->cached_view().preview.has_value());
-  EXPECT_EQ(s->cached_view().preview->state, PreviewState::kPending);
-  ViewerOptions options;
-  options.delivery = Delivery::kEvery;
-  const auto viewer = std::make_shared<Viewer>(options, [] {});
-  s->watch(viewer);
-  ASSERT_TRUE(start(*s).ok());
-  ASSERT_TRUE(start(*plain).ok());
-  await_end(*s);
-  await_end(*plain);
-  EXPECT_EQ(inspect(*s)->state_hash, inspect(*plain)->state_hash);
-
-  EXPECT_TRUE(std::holds_alternative<TopologyToSend>(viewer->take()));
-  EXPECT_FALSE(std::get<FrameToSend>(viewer->take()).frame->preview) << "the start";
-  const auto shown = std::get<FrameToSend>(viewer->take()).frame;
-  EXPECT_TRUE(shown->preview);
-  EXPECT_EQ(shown->sequence, 0u);
-  EXPECT_EQ(shown->fields[0].values.size(), 3u * 17 * 17) << "on the full skin";
-  EXPECT_EQ(std::get<FrameToSend>(viewer->take()).frame->sequence, 1u);
-
-  const PreviewView preview = *sink_.views.at("a").preview;
-  EXPECT_EQ(preview.state, PreviewState::kDone) << preview.reason;
-  EXPECT_EQ(preview.n_hexahedra, 64);
-  EXPECT_GT(preview.wall_s, 0.0);
-  EXPECT_LT(preview.report.step, inspect(*s)->report.step);
-  ASSERT_TRUE(preview.difference.has_value());
-  EXPECT_GT(preview.difference->max, 0.0);
-  EXPECT_LT(preview.difference->max, inspect(*s)->report.skin_max_displacement);
-}
-
-TEST_F(SessionTest, GoesOnWithoutAPreviewThatCannotBe) {
-  // A zone between the centres of the coarse film's cells.
-  SessionOptions options{"a", 7, false};
-  options.preview = true;
-  auto simulation = make_soft_simulation();
-  simulation::SimulationSpec spec = simulation->spec();
-  spec.films[0].zones = {{"all", simulation::ChartBox{0.28, 0.34, 0.2, 0.8}}};
-  spec.injections[0].volume = 2e-8;
-  auto narrow = simulation::Simulation::create(simulation->shared_model(), spec);
-  ASSERT_TRUE(narrow.ok()) << narrow.status();
-  const auto s = std::make_shared<Session>(options, *std::move(narrow), workers_, sink_);
-  ASSERT_TRUE(start(*s).ok());
-  await_end(*s);
-  const auto view = inspect(*s);
-  EXPECT_EQ(view->state, SimulationState::kSettled) << view->reason;
-  EXPECT_EQ(view->preview->state, PreviewState::kFailed);
-  EXPECT_THAT(view->preview->reason, HasSubstr("the coarse model cannot hold the plan"));
-  EXPECT_FALSE(view->preview->difference.has_value());
-}
-
-TEST_F(SessionTest, AnInjectionAfterThePreviewMakesItOutdated) {
-  const auto s = soft_session("a", true);
-  ASSERT_TRUE(start(*s).ok());
-  while (s->cached_view().report.step < 3) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  const auto injected = ask([&](auto reply) { s->inject({"all", 0.5e-7, 1e-6, std::nullopt, std::nullopt}, reply); });
-  ASSERT_TRUE(injected.ok()) << injected.status();
-  EXPECT_EQ(injected->preview->state, PreviewState::kOutdated);
-  await_end(*s);
-  EXPECT_EQ(inspect(*s)->preview->state, PreviewState::kOutdated);
-  EXPECT_FALSE(inspect(*s)->preview->difference.has_value());
-}
-
-TEST_F(SessionTest, StopsWithinAStepOfThePreview) {
-  const auto s = soft_session("a", true);
-  ASSERT_TRUE(start(*s).ok());
-  const auto paused = pause(*s);
-  ASSERT_TRUE(paused.ok());
-  const auto stopped = ask([&](auto reply) { s->stop("enough", reply); });
-  ASSERT_TRUE(stopped.ok());
-  if (stopped->report.step == 0) {
-    EXPECT_EQ(stopped->preview->state, PreviewState::kFailed);
-    EXPECT_EQ(stopped->preview->reason, "the simulation ended before it");
-  }
-  EXPECT_FALSE(stopped->preview->difference.has_value());
 }
 
 TEST_F(SessionTest, StopsWhileItWaitsForRealTime) {

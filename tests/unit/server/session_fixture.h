@@ -1,0 +1,90 @@
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "server/sessions/session.h"
+
+namespace lipofill::server {
+
+/// Keeps in memory what a store would.
+class MemorySink : public SessionSink {
+ public:
+  absl::Status append_series(const std::string&, const std::vector<SeriesEntry>& rows) override {
+    const std::lock_guard lock(mutex);
+    for (const SeriesEntry& row : rows) steps.push_back(row.report.step);
+    return absl::OkStatus();
+  }
+  absl::Status ended(const std::string& id, const SessionView& view, const Topology&, const Frame& frame) override {
+    const std::lock_guard lock(mutex);
+    views[id] = view;
+    EXPECT_TRUE(frame.end);
+    return absl::OkStatus();
+  }
+  std::mutex mutex;
+  std::vector<uint64_t> steps;
+  std::map<std::string, SessionView> views;
+};
+
+/// A film with a wall of its own: steps of microseconds.
+inline std::unique_ptr<simulation::Simulation> make_simulation(double end_s) {
+  simulation::FaceModelSpec face;
+  face.region = geometry::SquareSpec{0.04, 0.04};
+  face.n_xi = face.n_eta = 4;
+  const auto model = simulation::build_face_model(face, [](double, const char*) { return true; });
+  EXPECT_TRUE(model.ok()) << model.status();
+  simulation::SimulationSpec spec;
+  simulation::FilmSpec film;
+  film.name = "plane";
+  film.n_xi = film.n_eta = 3;
+  film.zones = {{"all", simulation::ChartBox{}}};
+  film.wall = simulation::FilmWallKind::kWinkler;
+  film.wall_stiffness = 1e7;
+  spec.films = {film};
+  spec.injections = {{"all", 1e-7, 1e-6, 0.0, std::nullopt}};
+  spec.settle_skin_speed = 0.0;
+  spec.end = end_s;
+  auto made = simulation::Simulation::create(*model, spec);
+  EXPECT_TRUE(made.ok()) << made.status();
+  return *std::move(made);
+}
+
+class SessionTest : public ::testing::Test {
+ protected:
+  std::shared_ptr<Session> session(const std::string& id, double end_s, bool real_time = false) {
+    return std::make_shared<Session>(SessionOptions{id, 7, real_time}, make_simulation(end_s), workers_, sink_);
+  }
+  /// Gives a command and waits for its answer.
+  template <typename Command>
+  absl::StatusOr<SessionView> ask(Command&& command) {
+    auto answer = std::make_shared<std::promise<absl::StatusOr<SessionView>>>();
+    command([answer](absl::StatusOr<SessionView> view) { answer->set_value(std::move(view)); });
+    return answer->get_future().get();
+  }
+  absl::StatusOr<SessionView> start(Session& s) {
+    return ask([&s](auto reply) { s.start(reply); });
+  }
+  absl::StatusOr<SessionView> pause(Session& s) {
+    return ask([&s](auto reply) { s.pause(reply); });
+  }
+  absl::StatusOr<SessionView> inspect(Session& s) {
+    return ask([&s](auto reply) { s.inspect(reply); });
+  }
+  void await_end(const Session& s) {
+    while (!has_ended(s.cached_view().state)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+
+  MemorySink sink_;
+  WorkerPool workers_{2};
+};
+
+}  // namespace lipofill::server

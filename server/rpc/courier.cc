@@ -16,24 +16,29 @@ Courier::~Courier() {
 }
 
 void Courier::wake(std::weak_ptr<Stream> stream) {
+  bool is_first = false;
   {
     const std::lock_guard lock(mutex_);
-    queue_.push_back(std::move(stream));
+    is_first = waiting_.empty();
+    waiting_.push_back(std::move(stream));
   }
-  changed_.notify_one();
+  if (is_first) changed_.notify_one();
 }
 
 void Courier::work() {
   name_this_thread("courier");
-  std::unique_lock lock(mutex_);
+  std::vector<std::weak_ptr<Stream>> taken;
   while (true) {
-    changed_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
-    if (stopping_) return;
-    const std::weak_ptr<Stream> next = std::move(queue_.front());
-    queue_.pop_front();
-    lock.unlock();
-    if (const auto stream = next.lock(); stream != nullptr) stream->deliver();
-    lock.lock();
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+      if (stopping_) return;
+      taken.swap(waiting_);
+    }
+    for (const std::weak_ptr<Stream>& next : taken) {
+      if (const auto stream = next.lock(); stream != nullptr) stream->deliver();
+    }
+    taken.clear();
   }
 }
 

@@ -1,15 +1,16 @@
 #pragma once
 
 #include <condition_variable>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 namespace lipofill::server {
 
 /// One thread that starts the writes of streams which have something new: encoding and network stay off the threads
-/// that compute.
+/// that compute. It takes all that waits at once, so that a thread with a frame for many viewers is not held up by the
+/// writes to the first of them. Checked by tests/unit/server/courier_test.cc.
 class Courier {
  public:
   class Stream {
@@ -29,7 +30,7 @@ class Courier {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::weak_ptr<Stream>> queue_;
+  std::vector<std::weak_ptr<Stream>> waiting_;
   bool stopping_ = false;
   std::thread thread_;
 };

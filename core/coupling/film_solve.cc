@@ -96,7 +96,7 @@ void FilmSolver::solve(const Eigen::VectorXd& gap_without_pressure, const Eigen:
     if (!solve_pressure(std::max(tolerance.mismatch, early), solution)) break;
     const double fullest = find_fullest(solution.volume);
     solution.change = (solution.volume - guess_).cwiseAbs().maxCoeff() / fullest;
-    if (solution.change <= tolerance.change) {
+    if (solution.change <= tolerance.change && is_exact(tolerance.mismatch, solution)) {
       solution.converged = solution.volume.minCoeff() >= -kRoundOff * fullest;
       const bool may_be_tolerance = tolerance.change > FilmTolerance().change;
       if (solution.converged || !may_be_tolerance) break;
@@ -105,6 +105,14 @@ void FilmSolver::solve(const Eigen::VectorXd& gap_without_pressure, const Eigen:
     const double blend = solution.iterations < kUndampedIterations ? 1.0 : 0.5;
     guess_ += blend * (solution.volume - guess_);
   }
+}
+
+/// With C p made anew: solves of many cells only follow how it changes.
+bool FilmSolver::is_exact(double tolerance, FilmSolution& solution) {
+  if (!solver_.is_lagged()) return true;
+  solver_.multiply_walls(solution.pressure, moved_);
+  residual_ = solution.volume - *gap_ - moved_;
+  return mismatch(solution.volume) <= tolerance;
 }
 
 /// Pressures at fixed thickness: improves `solution.pressure`; volume, void and flux follow. False: it cannot.

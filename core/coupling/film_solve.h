@@ -56,6 +56,7 @@ class FilmSolver {
   void begin_directions(const FilmSolution& solution);
   void turn_directions(const FilmSolution& solution);
   void set_thickness(const Eigen::VectorXd& volume);
+  bool is_exact(double tolerance, FilmSolution& solution);
   bool solve_pressure(double tolerance, FilmSolution& solution);
   void evaluate(FilmSolution& solution);
   void hold_cells_at_the_limit(const Eigen::VectorXd& p);

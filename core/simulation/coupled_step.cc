@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/simulation/step_start.h"
 #include "core/solid/hex_quality.h"
 
 namespace lipofill::simulation {
@@ -70,7 +71,7 @@ void CoupledStep::try_step(const SimulationState& state, const std::vector<Eigen
   outcome.accepted = true;
 }
 
-/// Carries the last step on: where the iteration starts.
+/// Carries the last steps on: where the iteration starts.
 void CoupledStep::predict(const SimulationState& from, double dt, SimulationState& next,
                           coupling::FilmSolution& solution) {
   gather(from, &FilmState::pressure, solution.pressure);
@@ -86,7 +87,7 @@ void CoupledStep::predict(const SimulationState& from, double dt, SimulationStat
     solution.flux[f].head(velocity.size()) = velocity;
   }
   if (!tissue_ || from.velocities.isZero(0.0)) return;
-  next.positions = from.positions + dt * from.velocities;
+  predict_positions(from, dt, next.positions);
   bring_forces_to(next, dt);
   if (tissue_->tissue.min_volume_ratio() <= 0.0) next.positions = from.positions;
 }

@@ -166,6 +166,7 @@ SimulationState CoupledStep::rest_state() const {
   if (tissue_) {
     state.positions = tissue_->tissue.mesh().rest_positions;
     state.velocities.setZero(3, state.positions.cols());
+    for (Eigen::Matrix3Xd& earlier : state.earlier_velocities) earlier = state.velocities;
     state.spring_is_intact.setOnes(n_ligament_springs());
     state.factored_positions = state.positions;
     state.factored_springs = state.spring_is_intact;

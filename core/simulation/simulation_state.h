@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,16 +23,19 @@ struct FilmState {
 /// All that changes from step to step and decides the next: what a snapshot holds.
 struct SimulationState {
   uint64_t step = 0;
-  double time = 0.0;                 ///< [s]
-  double last_step = 0.0;            ///< size of the last step [s]
-  double next_step = 0.0;            ///< size of the next step [s]
-  uint64_t rejected_steps = 0;       ///< tried and taken back since the start
-  int slow_steps = 0;                ///< steps in a row with the skin slower than the settling speed
-  double skin_speed = 0.0;           ///< largest over the nodes of the skin in the last step [m/s]
-  double injection_work = 0.0;       ///< done by sources since the start, sum of p dV [J]
-  double film_dissipation = 0.0;     ///< lost to friction in the films since the start [J]
-  Eigen::Matrix3Xd positions;        ///< [m]   (3, n_nodes); empty without tissue
-  Eigen::Matrix3Xd velocities;       ///< [m/s] (3, n_nodes)
+  double time = 0.0;              ///< [s]
+  double last_step = 0.0;         ///< size of the last step [s]
+  double next_step = 0.0;         ///< size of the next step [s]
+  uint64_t rejected_steps = 0;    ///< tried and taken back since the start
+  int slow_steps = 0;             ///< steps in a row with the skin slower than the settling speed
+  double skin_speed = 0.0;        ///< largest over the nodes of the skin in the last step [m/s]
+  double injection_work = 0.0;    ///< done by sources since the start, sum of p dV [J]
+  double film_dissipation = 0.0;  ///< lost to friction in the films since the start [J]
+  Eigen::Matrix3Xd positions;     ///< [m]   (3, n_nodes); empty without tissue
+  Eigen::Matrix3Xd velocities;    ///< [m/s] (3, n_nodes)
+  /// Of the three steps before the last, the latest first [m/s] (3, n_nodes).
+  std::array<Eigen::Matrix3Xd, 3> earlier_velocities;
+  int equal_steps = 0;               ///< of the last one's size, in a row
   Eigen::VectorXd spring_is_intact;  ///< 1 or 0, of every spring of a ligament
   /// Where the tissue was when its system was last factored; the factor serves later steps until it no longer
   /// converges.

@@ -7,7 +7,7 @@
 namespace lipofill::simulation {
 namespace {
 
-constexpr char kMagic[] = "lipofill-state-4";
+constexpr char kMagic[] = "lipofill-state-5";
 
 /// Visits every number of the mutable state in a fixed order, so that writing, reading and hashing cannot disagree.
 template <typename Visitor>
@@ -23,6 +23,8 @@ void visit_state(SimulationState& state, Visitor& visit) {
   visit.number(state.film_dissipation);
   visit.array(state.positions.data(), state.positions.size());
   visit.array(state.velocities.data(), state.velocities.size());
+  visit.number(state.equal_steps);
+  for (Eigen::Matrix3Xd& velocities : state.earlier_velocities) visit.array(velocities.data(), velocities.size());
   visit.array(state.spring_is_intact.data(), state.spring_is_intact.size());
   visit.number(state.factored_dt);
   visit.number(state.factored_in_double);

@@ -266,6 +266,10 @@ void CoupledStep::finish_tissue(const SimulationState& from, double dt, StepOutc
   if (!tissue_) return;
   SimulationState& next = outcome.state;
   next.velocities = (next.positions - from.positions) / dt;
+  next.earlier_velocities[0] = from.velocities;
+  next.earlier_velocities[1] = from.earlier_velocities[0];
+  next.earlier_velocities[2] = from.earlier_velocities[1];
+  next.equal_steps = dt == from.last_step ? from.equal_steps + 1 : 1;
   describe_tissue(outcome, dt);
   for (const LigamentLayout& ligament : tissue_->ligaments) {
     for (int k = ligament.first_spring; k < ligament.first_spring + ligament.n_springs; ++k) {

@@ -44,7 +44,9 @@ absl::Status serve(const Options& options) {
   if (!files.ok()) return files.status();
   if (auto recovered = recover(**store, *files); !recovered.ok()) return recovered;
 
-  Backend backend({options.workers, options.max_simulations}, **store, *files);
+  const BackendOptions shared{options.workers, options.max_simulations, options.keepalive_s,
+                              options.keepalive_timeout_s};
+  Backend backend(shared, **store, *files);
   const auto server = GrpcServer::start(options.listen, backend);
   if (!server.ok()) return server.status();
   if (!options.port_file.empty()) {

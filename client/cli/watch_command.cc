@@ -13,10 +13,15 @@
 namespace lipofill::client {
 namespace {
 
+/// Two, so that one is on its way while the other is told.
+constexpr uint32_t kFramesAhead = 2;
+
 struct Options {
   std::string simulation;
   double interval_ms = 0.0;
+  double max_rate_hz = 0.0;
   bool every = false;
+  bool compact = false;
 };
 
 /// The largest length of a field's rows; 0 without the field.
@@ -65,7 +70,11 @@ absl::StatusOr<ExitCode> watch_simulation(Application& application, const Option
   v1::WatchRequest request;
   request.set_simulation(full_name("simulations", options.simulation));
   request.set_delivery(options.every ? v1::WatchRequest::EVERY : v1::WatchRequest::LATEST);
-  request.add_meshes("skin");
+  if (!options.every) request.set_max_unacknowledged_frames(kFramesAhead);
+  request.add_fields("skin.displacement");
+  request.add_fields("skin.pressure");
+  if (options.max_rate_hz > 0.0) request.set_max_rate_hz(options.max_rate_hz);
+  if (options.compact) request.set_field_type(v1::UINT16);
   if (options.interval_ms > 0.0) request.set_interval_ms(options.interval_ms);
   WatchHandlers handlers;
   handlers.on_meshes = [](const Meshes&) { return absl::OkStatus(); };
@@ -86,11 +95,16 @@ void add_watch_command(CLI::App& root, Application& application) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = add_command(root, application, "watch",
                                   "Follow a simulation to its end, a line a frame (--json: an object a line)",
-                                  "  lipofill watch abc\n  lipofill watch abc --every --interval-ms 100 --json\n",
+                                  "  lipofill watch abc\n"
+                                  "  lipofill watch abc --max-rate-hz 5 --compact\n"
+                                  "  lipofill watch abc --every --interval-ms 100 --json\n",
                                   [&application, options] { return watch_simulation(application, *options); });
   command->add_option("simulation", options->simulation, "simulations/ID, or the ID alone")->required();
   command->add_option("--interval-ms", options->interval_ms, "simulated time between frames; default: every step")
       ->check(CLI::NonNegativeNumber);
+  command->add_option("--max-rate-hz", options->max_rate_hz, "frames a second of the clock; default: no bound")
+      ->check(CLI::NonNegativeNumber);
+  command->add_flag("--compact", options->compact, "16-bit fields: half the bytes, good to 1/130,000 of their range");
   command->add_flag("--every", options->every, "no frame is left out, however slow the reader");
 }
 

@@ -10,7 +10,8 @@
 namespace lipofill::client {
 
 /// Puts slices together to whole arrays. Never holds more than what was received: a slice that claims a huge array
-/// costs nothing. Checked by tests/unit/client/array_assembler_test.cc.
+/// costs nothing. UINT16 codes become the float32 values they stand for. Checked by
+/// tests/unit/client/array_assembler_test.cc.
 class ArrayAssembler {
  public:
   /// DATA_LOSS for a slice that does not follow the one before it, or that goes beyond the array's own shape.
@@ -20,7 +21,20 @@ class ArrayAssembler {
   absl::StatusOr<std::vector<Array>> take();
 
  private:
-  std::vector<Array> arrays_;
+  /// Between what was received and what it will be.
+  struct Growing {
+    Array array;
+    bool is_coded = false;
+    std::vector<double> box_min;
+    std::vector<double> box_max;
+
+    size_t bytes_each() const { return is_coded ? sizeof(uint16_t) : element_size(array.type); }
+  };
+  static absl::StatusOr<Growing> begin(const v1::ArraySlice& slice);
+  static void decode(Growing& coded);
+  bool has(const std::string& name) const;
+
+  std::vector<Growing> arrays_;
 };
 
 }  // namespace lipofill::client

@@ -22,6 +22,7 @@ struct Array {
   ElementType type = ElementType::kFloat32;
   std::vector<size_t> shape;
   std::vector<std::byte> bytes;
+  double max_error = 0.0;  ///< how far a value may be from what the daemon computed, where it came as a code
 
   std::string_view mesh() const;
   std::string_view field() const;

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
+#include <random>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "client/cpp/array_assembler.h"
+#include "client/cpp/silence_watch.h"
 #include "lipofill/v1/frame_service.grpc.pb.h"
 #include "lipofill/v1/patient_service.grpc.pb.h"
 
@@ -19,13 +21,15 @@ class StreamAssembler {
   StreamAssembler(v1::WatchRequest& request, const WatchHandlers& handlers) : request_(request), handlers_(handlers) {}
 
   absl::Status add(const v1::WatchResponse& response) {
+    completed_frame_ = false;
     if (response.has_mesh()) return add_mesh(response.mesh());
     if (response.has_frame()) return add_frame(response.frame());
     return absl::OkStatus();
   }
 
-  bool ended() const { return ended_; }
   bool moved() const { return moved_; }
+  /// Whether the last message was the end of a frame that is to be acknowledged: all but the last one.
+  bool has_frame_to_acknowledge() const { return completed_frame_ && request_.max_unacknowledged_frames() > 0; }
 
  private:
   absl::Status add_mesh(const v1::MeshSlice& slice) {
@@ -50,7 +54,7 @@ class StreamAssembler {
     request_.set_seen_epoch(slice.epoch());
     request_.set_seen_sequence(slice.sequence());
     moved_ = true;
-    ended_ = slice.end();
+    completed_frame_ = !slice.end();
     return handlers_.on_frame({slice.epoch(), slice.sequence(), slice.time_s(), slice.skipped_frames(), slice.end(),
                                *std::move(fields), slice.preview()});
   }
@@ -59,9 +63,32 @@ class StreamAssembler {
   const WatchHandlers& handlers_;
   ArrayAssembler mesh_;
   ArrayAssembler frame_;
-  bool ended_ = false;
+  bool completed_frame_ = false;
   bool moved_ = false;
 };
+
+/// What fails here without its fault ends the stream too, which then says why.
+absl::Status acknowledge(const Connection& connection, const v1::WatchRequest& request) {
+  v1::AcknowledgeFrameRequest message;
+  message.set_simulation(request.simulation());
+  message.set_viewer(request.viewer());
+  message.set_epoch(request.seen_epoch());
+  message.set_sequence(request.seen_sequence());
+  const absl::Status status =
+      connection.call<v1::FrameService>(&v1::FrameService::Stub::AcknowledgeFrame, message).status();
+  return absl::IsInvalidArgument(status) || absl::IsPermissionDenied(status) ? status : absl::OkStatus();
+}
+
+std::string make_viewer_name() {
+  std::random_device random;
+  return absl::StrCat("v", absl::Hex(random(), absl::kZeroPad8), absl::Hex(random(), absl::kZeroPad8));
+}
+
+std::chrono::milliseconds silence_limit(const v1::WatchRequest& request) {
+  const std::chrono::duration<double, std::milli> heartbeat(request.heartbeat_ms());
+  return kSilentHeartbeats *
+         (request.has_heartbeat_ms() ? std::chrono::ceil<std::chrono::milliseconds>(heartbeat) : kDefaultHeartbeat);
+}
 
 /// One stream to its end. `moved` says whether anything whole came.
 absl::Status watch_once(const Connection& connection, v1::WatchRequest& request, const WatchHandlers& handlers,
@@ -69,18 +96,34 @@ absl::Status watch_once(const Connection& connection, v1::WatchRequest& request,
   const auto stub = v1::FrameService::NewStub(connection.channel());
   grpc::ClientContext context;
   std::stop_callback cancel(connection.stop(), [&context] { context.TryCancel(); });
+  const std::chrono::milliseconds limit = silence_limit(request);
+  SilenceWatch silence(limit, [&context] { context.TryCancel(); });
   // Reading changes the request, so the stream is opened with a copy.
   const v1::WatchRequest opened = request;
   const auto reader = stub->Watch(&context, opened);
   StreamAssembler assembler(request, handlers);
   v1::WatchResponse response;
   absl::Status status;
-  while (status.ok() && reader->Read(&response)) status = assembler.add(response);
+  const auto read = [&] {
+    silence.begin_wait();
+    const bool came = reader->Read(&response);
+    silence.end_wait();
+    return came;
+  };
+  while (status.ok() && read()) {
+    status = assembler.add(response);
+    if (status.ok() && assembler.has_frame_to_acknowledge()) status = acknowledge(connection, request);
+  }
   *moved = assembler.moved();
   if (!status.ok()) context.TryCancel();
   const grpc::Status finished = reader->Finish();
   *is_wire_error = status.ok() && !finished.ok();
   if (!status.ok()) return status;
+  if (silence.was_silent()) {
+    return absl::UnavailableError(absl::StrCat("nothing came from ", connection.server(), " for ",
+                                               static_cast<double>(limit.count()) / 1000.0,
+                                               " s, not even a heartbeat"));
+  }
   return status_of(finished, connection.server());
 }
 
@@ -99,6 +142,7 @@ bool stopped_within(const std::stop_token& stop, std::chrono::milliseconds time)
 }  // namespace
 
 absl::Status watch(const Connection& connection, v1::WatchRequest request, const WatchHandlers& handlers) {
+  if (request.max_unacknowledged_frames() > 0 && request.viewer().empty()) request.set_viewer(make_viewer_name());
   bool seen_any = false;
   for (int resumes = 0;;) {
     bool moved = false;

@@ -42,6 +42,14 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
       ->type_name("N")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  app.add_option("--keepalive-s", options.keepalive_s, "A client silent for so long is asked whether it is there")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+  app.add_option("--keepalive-timeout-s", options.keepalive_timeout_s, "and dropped when it does not answer in so long")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
   app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error or off")
       ->type_name("LEVEL")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))

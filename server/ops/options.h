@@ -11,6 +11,8 @@ struct Options {
   std::string data = "lipofill-data";
   int workers = 1;
   int max_simulations = 64;
+  double keepalive_s = 30.0;
+  double keepalive_timeout_s = 20.0;
   std::string log_level = "info";
   std::string port_file;
 };

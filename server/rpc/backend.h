@@ -20,17 +20,23 @@ namespace lipofill::server {
 struct BackendOptions {
   int workers = 1;
   int max_simulations = 64;
+  /// A client that has been silent for so long is asked whether it is there, and dropped when it does not answer in
+  /// time.
+  double keepalive_s = 30.0;
+  double keepalive_timeout_s = 20.0;
 };
 
 /// What the services share.
 struct Backend {
-  Backend(const BackendOptions& options, Store& the_store, ScanFiles& files)
-      : store(the_store),
+  Backend(const BackendOptions& the_options, Store& the_store, ScanFiles& files)
+      : options(the_options),
+        store(the_store),
         scan_files(files),
         sessions(options.max_simulations),
         keeper(the_store, sessions),
         workers(options.workers) {}
 
+  const BackendOptions options;
   Store& store;
   ScanFiles& scan_files;
   std::atomic<bool> stopping = false;

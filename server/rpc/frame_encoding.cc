@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "core/base/hash.h"
+#include "server/rpc/field_quantisation.h"
 
 namespace lipofill::server {
 namespace {
@@ -21,11 +22,6 @@ using google::protobuf::internal::WireFormatLite;
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-/// "film/deep" of "film/deep.pressure".
-std::string mesh_of(const std::string& array) {
-  return array.substr(0, array.rfind('.'));
 }
 
 void add_array(v1::ArraySlice& array, const std::string& name, const std::string& unit, v1::ArrayLocation location,
@@ -46,13 +42,17 @@ v1::ArraySlice cut(const v1::ArraySlice& whole, size_t offset, size_t bytes) {
   piece.set_location(whole.location());
   piece.set_type(whole.type());
   *piece.mutable_shape() = whole.shape();
+  *piece.mutable_box_min() = whole.box_min();
+  *piece.mutable_box_max() = whole.box_max();
+  if (whole.has_max_error()) piece.set_max_error(whole.max_error());
   piece.set_offset_bytes(offset);
   piece.set_data(whole.data().data() + offset, bytes);
   return piece;
 }
 
-std::string cache_key(const std::vector<std::string>& meshes) {
-  return absl::StrJoin(meshes, "\n");
+std::string cache_key(const Selection& selection) {
+  return absl::StrCat(absl::StrJoin(selection.meshes, "\n"), "\n\n", absl::StrJoin(selection.fields, "\n"),
+                      selection.quantised ? "\n\nuint16" : "");
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ v1::MeshSlice to_whole_meshes(const Topology& topology, const std::vector<std::s
   return whole;
 }
 
-v1::FrameSlice to_whole_frame(const Frame& frame, const std::vector<std::string>& meshes) {
+v1::FrameSlice to_whole_frame(const Frame& frame, const Selection& selection) {
   v1::FrameSlice whole;
   whole.set_epoch(frame.epoch);
   whole.set_sequence(frame.sequence);
@@ -79,14 +79,16 @@ v1::FrameSlice to_whole_frame(const Frame& frame, const std::vector<std::string>
   whole.set_end(frame.end);
   whole.set_preview(frame.preview);
   for (const simulation::FrameField& field : frame.fields) {
-    if (!contains(meshes, field.mesh)) continue;
+    const std::string name = absl::StrCat(field.mesh, ".", field.name);
+    if (!selection.has_mesh(field.mesh) || !selection.has_field(name)) continue;
     const size_t components = static_cast<size_t>(field.components);
     const size_t n = field.values.size() / components;
     const auto location = field.location == simulation::FieldLocation::kPoint ? v1::POINT : v1::CELL;
     v1::ArraySlice& array = *whole.add_fields();
-    add_array(array, absl::StrCat(field.mesh, ".", field.name), field.unit, location, v1::FLOAT32, {n},
-              field.values.data(), field.values.size() * sizeof(float));
+    add_array(array, name, field.unit, location, v1::FLOAT32, {n}, field.values.data(),
+              field.values.size() * sizeof(float));
     if (components > 1) array.add_shape(components);
+    if (selection.quantised) quantise(array);
   }
   return whole;
 }
@@ -96,6 +98,17 @@ void keep_meshes(const std::vector<std::string>& meshes, RepeatedPtrField<v1::Ar
     return !contains(meshes, mesh_of(array.name()));
   });
   arrays.erase(gone, arrays.end());
+}
+
+void keep_selection(const Selection& selection, v1::FrameSlice& frame) {
+  RepeatedPtrField<v1::ArraySlice>& fields = *frame.mutable_fields();
+  const auto gone = std::remove_if(fields.begin(), fields.end(), [&selection](const v1::ArraySlice& field) {
+    return !selection.has_mesh(mesh_of(field.name())) || !selection.has_field(field.name());
+  });
+  fields.erase(gone, fields.end());
+  for (v1::ArraySlice& field : fields) {
+    if (selection.quantised) quantise(field);
+  }
 }
 
 std::vector<std::string> mesh_names(const v1::MeshSlice& meshes) {
@@ -197,13 +210,13 @@ std::string frame_header(size_t body_size, uint64_t skipped_frames) {
 }
 
 std::shared_ptr<const EncodedMessages> encode_shared(const Topology& topology, const std::vector<std::string>& meshes) {
-  return topology.encodings.get(cache_key(meshes), [&] { return encode_meshes(to_whole_meshes(topology, meshes)); });
+  return topology.encodings.get(cache_key({meshes}), [&] { return encode_meshes(to_whole_meshes(topology, meshes)); });
 }
 
-std::shared_ptr<const EncodedMessages> encode_shared(const Frame& frame, const std::vector<std::string>& meshes,
+std::shared_ptr<const EncodedMessages> encode_shared(const Frame& frame, const Selection& selection,
                                                      const std::string& topology_hash) {
-  return frame.encodings.get(cache_key(meshes), [&] {
-    v1::FrameSlice whole = to_whole_frame(frame, meshes);
+  return frame.encodings.get(cache_key(selection), [&] {
+    v1::FrameSlice whole = to_whole_frame(frame, selection);
     whole.set_topology_hash(topology_hash);
     return encode_frame(whole);
   });

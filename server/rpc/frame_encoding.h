@@ -6,6 +6,7 @@
 
 #include "lipofill/v1/frame_service.pb.h"
 #include "server/sessions/frame.h"
+#include "server/sessions/selection.h"
 
 namespace lipofill::server {
 
@@ -14,9 +15,10 @@ constexpr size_t kMaxSliceBytes = size_t{1} << 20;
 
 /// Whole arrays, as they are kept for simulations that have ended.
 v1::MeshSlice to_whole_meshes(const Topology& topology, const std::vector<std::string>& meshes);
-v1::FrameSlice to_whole_frame(const Frame& frame, const std::vector<std::string>& meshes);
-/// The same for meshes and frames that were kept: what does not belong to `meshes` is left out.
+v1::FrameSlice to_whole_frame(const Frame& frame, const Selection& selection);
+/// The same for meshes and frames that were kept: what is not selected is left out.
 void keep_meshes(const std::vector<std::string>& meshes, google::protobuf::RepeatedPtrField<v1::ArraySlice>& arrays);
+void keep_selection(const Selection& selection, v1::FrameSlice& frame);
 
 /// Names of the meshes whose points are there.
 std::vector<std::string> mesh_names(const v1::MeshSlice& meshes);
@@ -37,9 +39,9 @@ EncodedMessages encode_frame(const v1::FrameSlice& whole);
 /// What goes before a body of encode_frame() to make it a serialised WatchResponse.
 std::string frame_header(size_t body_size, uint64_t skipped_frames);
 
-/// The same from a session, each made once and shared by all viewers of the same meshes.
+/// The same from a session, each made once and shared by all viewers of the same selection.
 std::shared_ptr<const EncodedMessages> encode_shared(const Topology& topology, const std::vector<std::string>& meshes);
-std::shared_ptr<const EncodedMessages> encode_shared(const Frame& frame, const std::vector<std::string>& meshes,
+std::shared_ptr<const EncodedMessages> encode_shared(const Frame& frame, const Selection& selection,
                                                      const std::string& topology_hash);
 
 }  // namespace lipofill::server

@@ -21,14 +21,57 @@ absl::StatusOr<v1::WatchRequest> parse_request(const grpc::ByteBuffer& bytes) {
   return request;
 }
 
+void check_rate(const v1::WatchRequest& request, FieldViolations& violations) {
+  constexpr double kLeastRate = 1e-3;
+  constexpr double kMostRate = 1000.0;
+  if (!request.has_max_rate_hz()) return;
+  violations.check_range("max_rate_hz", request.max_rate_hz(), kLeastRate, kMostRate, "Hz");
+  if (request.delivery() == v1::WatchRequest::EVERY) {
+    violations.add("max_rate_hz",
+                   absl::StrCat("is ", request.max_rate_hz(), " Hz with delivery EVERY, which leaves no ",
+                                "frame out; use LATEST, or interval_ms"));
+  }
+}
+
+void check_acknowledgement(const v1::WatchRequest& request, FieldViolations& violations) {
+  constexpr double kMostFrames = 1000.0;
+  violations.check_range("max_unacknowledged_frames", request.max_unacknowledged_frames(), 0.0, kMostFrames, "frames");
+  if (request.max_unacknowledged_frames() > 0 && request.viewer().empty()) {
+    violations.add("viewer", "is empty; a viewer that acknowledges frames needs a name to do so by");
+  } else if (!request.viewer().empty()) {
+    if (request.max_unacknowledged_frames() == 0) {
+      violations.add("viewer", "is given without max_unacknowledged_frames: there is nothing to acknowledge");
+    }
+    violations.absorb("", id_or_new(request.viewer(), 'v', "viewer").status());
+  }
+}
+
+Courier::Clock::duration heartbeat_of(const v1::WatchRequest& request) {
+  constexpr double kHeartbeatMs = 10'000.0;
+  const double period_ms = request.has_heartbeat_ms() ? request.heartbeat_ms() : kHeartbeatMs;
+  return std::chrono::ceil<Courier::Clock::duration>(std::chrono::duration<double, std::milli>(period_ms));
+}
+
 absl::StatusOr<ViewerOptions> to_viewer_options(const v1::WatchRequest& request) {
   constexpr double kMaxInterval = 1e9;
   FieldViolations violations;
   violations.check_range("interval_ms", request.interval_ms(), 0.0, kMaxInterval, "ms");
+  check_rate(request, violations);
+  if (request.field_type() != v1::ARRAY_TYPE_UNSPECIFIED && request.field_type() != v1::FLOAT32 &&
+      request.field_type() != v1::UINT16) {
+    violations.add("field_type",
+                   absl::StrCat("is ", v1::ArrayType_Name(request.field_type()), ", fields come as FLOAT32 or UINT16"));
+  }
+  if (request.has_heartbeat_ms()) violations.check_range("heartbeat_ms", request.heartbeat_ms(), 100.0, 3.6e6, "ms");
+  check_acknowledgement(request, violations);
   if (!violations.empty()) return violations.to_status();
   ViewerOptions options;
   options.delivery = request.delivery() == v1::WatchRequest::EVERY ? Delivery::kEvery : Delivery::kLatest;
-  options.meshes.assign(request.meshes().begin(), request.meshes().end());
+  options.selection.meshes.assign(request.meshes().begin(), request.meshes().end());
+  options.selection.fields.assign(request.fields().begin(), request.fields().end());
+  options.selection.quantised = request.field_type() == v1::UINT16;
+  options.max_rate_hz = request.max_rate_hz();
+  options.max_unacknowledged = request.max_unacknowledged_frames();
   options.interval_s = request.interval_ms() * 1e-3;
   options.seen_epoch = request.seen_epoch();
   options.seen_sequence = request.seen_sequence();
@@ -69,11 +112,30 @@ absl::Status FrameService::watch_session(const v1::WatchRequest& request, const 
   const auto viewer = std::make_shared<Viewer>(*options, [target] {
     if (const auto live = target.lock(); live != nullptr) live->wake();
   });
-  stream->begin(viewer, [session, viewer] { session->unwatch(viewer); });
+  const std::string id = session->id();
+  if (!request.viewer().empty()) viewers_.add(id, request.viewer(), viewer);
+  stream->begin(viewer, heartbeat_of(request), [this, session, viewer, id, name = request.viewer()] {
+    viewers_.remove(id, name, viewer);
+    session->unwatch(viewer);
+  });
   session->watch(viewer);
   // The daemon may have begun to stop since the caller looked, and gone past this session.
   if (backend_.stopping) viewer->close(absl::UnavailableError("the daemon is stopping"));
   return absl::OkStatus();
+}
+
+grpc::ServerUnaryReactor* FrameService::AcknowledgeFrame(grpc::CallbackServerContext* context,
+                                                         const v1::AcknowledgeFrameRequest* request,
+                                                         v1::AcknowledgeFrameResponse*) {
+  return answer(context, request, [this, request] {
+    const auto id = parse_simulation_name(request->simulation(), "simulation");
+    if (!id.ok()) return id.status();
+    const auto viewer = viewers_.find(*id, request->viewer());
+    if (viewer == nullptr) {
+      return absl::NotFoundError(absl::StrCat("no viewer '", request->viewer(), "' watches ", request->simulation()));
+    }
+    return viewer->acknowledge(request->epoch(), request->sequence());
+  });
 }
 
 absl::Status FrameService::watch_kept(const v1::WatchRequest& request, const std::string& id,
@@ -91,8 +153,11 @@ absl::Status FrameService::watch_kept(const v1::WatchRequest& request, const std
   for (const std::string& name : mesh_names(meshes)) known.meshes.push_back({name, {}, {}, 3});
   Viewer viewer(*options, [] {});
   if (const absl::Status chosen = viewer.choose_meshes(known); !chosen.ok()) return chosen;
-  keep_meshes(viewer.meshes(), *meshes.mutable_arrays());
-  keep_meshes(viewer.meshes(), *frame.mutable_fields());
+  std::vector<std::string> fields;
+  for (const v1::ArraySlice& field : frame.fields()) fields.push_back(field.name());
+  if (const absl::Status checked = viewer.check_fields(fields); !checked.ok()) return checked;
+  keep_meshes(viewer.selection().meshes, *meshes.mutable_arrays());
+  keep_selection(viewer.selection(), frame);
   meshes.set_topology_hash(compute_topology_hash(meshes));
   frame.set_topology_hash(meshes.topology_hash());
   stream->begin_kept(encode_meshes(meshes), encode_frame(frame));

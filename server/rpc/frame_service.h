@@ -3,17 +3,22 @@
 #include "lipofill/v1/frame_service.grpc.pb.h"
 #include "server/rpc/backend.h"
 #include "server/rpc/watch_stream.h"
+#include "server/sessions/viewer_registry.h"
 
 namespace lipofill::server {
 
 /// Meshes and fields, streamed. The raw callback method lets all viewers share one serialised slice.
 /// See proto/lipofill/v1/frame_service.proto.
-class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<v1::FrameService::Service> {
+class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<
+                         v1::FrameService::WithCallbackMethod_AcknowledgeFrame<v1::FrameService::Service>> {
  public:
   explicit FrameService(Backend& backend) : backend_(backend) {}
 
   grpc::ServerWriteReactor<grpc::ByteBuffer>* Watch(grpc::CallbackServerContext* context,
                                                     const grpc::ByteBuffer* request) override;
+  grpc::ServerUnaryReactor* AcknowledgeFrame(grpc::CallbackServerContext* context,
+                                             const v1::AcknowledgeFrameRequest* request,
+                                             v1::AcknowledgeFrameResponse* response) override;
 
  private:
   absl::Status begin(const grpc::ByteBuffer& bytes, std::shared_ptr<WatchStream>& stream);
@@ -23,6 +28,7 @@ class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<v1::Fr
                           const std::shared_ptr<WatchStream>& stream);
 
   Backend& backend_;
+  ViewerRegistry viewers_;
 };
 
 }  // namespace lipofill::server

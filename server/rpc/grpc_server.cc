@@ -5,6 +5,7 @@
 #include <grpcpp/server_builder.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "absl/strings/str_cat.h"
 
@@ -13,12 +14,16 @@ namespace {
 
 constexpr auto kShutdownGrace = std::chrono::milliseconds(500);
 
-/// A peer that has frozen or lost its network is found by pings; one that pings us more than every ten seconds is
-/// turned away.
-void set_channel_arguments(grpc::ServerBuilder& builder) {
+int to_milliseconds(double seconds) {
+  return static_cast<int>(std::lround(1e3 * seconds));
+}
+
+/// A peer that has frozen or lost its network is found by pings, or, when bytes wait for it, by TCP's own probes; one
+/// that pings us more than every ten seconds is turned away.
+void set_channel_arguments(const BackendOptions& options, grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 30'000);
-  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 20'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, to_milliseconds(options.keepalive_s));
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, to_milliseconds(options.keepalive_timeout_s));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 256);
@@ -35,7 +40,7 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::string&
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   std::unique_ptr<GrpcServer> self(new GrpcServer(backend));
   grpc::ServerBuilder builder;
-  set_channel_arguments(builder);
+  set_channel_arguments(backend.options, builder);
   builder.AddListeningPort(address, grpc::InsecureServerCredentials(), &self->port_);
   builder.RegisterService(&self->patients_);
   builder.RegisterService(&self->operations_);

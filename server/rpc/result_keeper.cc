@@ -22,7 +22,7 @@ absl::Status ResultKeeper::ended(const std::string& id, const SessionView& view,
   record.reason = view.reason;
   record.summary_message = to_summary(view).SerializeAsString();
   const SimulationResult result{to_whole_meshes(topology, meshes).SerializeAsString(),
-                                to_whole_frame(frame, meshes).SerializeAsString()};
+                                to_whole_frame(frame, {meshes}).SerializeAsString()};
   const absl::Status kept = store_.end_simulation(record, result);
   if (kept.ok()) sessions_.remove(id);
   return kept;

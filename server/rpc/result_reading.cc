@@ -53,7 +53,7 @@ absl::StatusOr<PresentResult> capture(Session& session, const std::vector<std::s
   if (topology == nullptr || frame == nullptr) {
     return absl::ResourceExhaustedError("the fields of the simulation cannot be taken");
   }
-  return PresentResult{to_whole_meshes(*topology, meshes), to_whole_frame(*frame, meshes)};
+  return PresentResult{to_whole_meshes(*topology, meshes), to_whole_frame(*frame, {meshes})};
 }
 
 absl::StatusOr<PresentResult> read_result(Backend& backend, const std::string& id) {

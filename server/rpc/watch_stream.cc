@@ -18,11 +18,14 @@ grpc::Slice share(const std::shared_ptr<const EncodedMessages>& encoded, const s
 
 }  // namespace
 
-void WatchStream::begin(std::shared_ptr<Viewer> viewer, std::function<void()> on_done) {
+void WatchStream::begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat,
+                        std::function<void()> on_done) {
   self_ = shared_from_this();
   on_done_ = std::move(on_done);
   std::unique_lock lock(mutex_);
   viewer_ = std::move(viewer);
+  heartbeat_ = heartbeat;
+  last_sent_ = Courier::Clock::now();
   advance(std::move(lock));
 }
 
@@ -48,12 +51,15 @@ void WatchStream::wake() {
 
 void WatchStream::deliver() {
   woken_ = false;
-  advance(std::unique_lock(mutex_));
+  std::unique_lock lock(mutex_);
+  if (alarm_ && *alarm_ <= Courier::Clock::now()) alarm_.reset();
+  advance(std::move(lock));
 }
 
 void WatchStream::OnWriteDone(bool ok) {
   std::unique_lock lock(mutex_);
   writing_ = false;
+  last_sent_ = Courier::Clock::now();
   at_hand_.Clear();
   if (!ok) cancelled_ = true;
   advance(std::move(lock));
@@ -66,6 +72,7 @@ void WatchStream::OnCancel() {
 }
 
 void WatchStream::OnDone() {
+  courier_.forget(weak_from_this());
   if (on_done_ != nullptr) on_done_();
   const std::shared_ptr<WatchStream> last = std::move(self_);
 }
@@ -79,6 +86,7 @@ void WatchStream::advance(std::unique_lock<std::mutex> lock) {
   } else if (outgoing_.empty() && !end_) {
     try {
       fetch();
+      if (outgoing_.empty() && !end_) queue_due_heartbeat();
     } catch (const std::exception& error) {
       end_ = absl::ResourceExhaustedError(error.what());
     }
@@ -101,15 +109,35 @@ void WatchStream::fetch() {
   while (outgoing_.empty() && !end_ && viewer_ != nullptr) {
     ToSend next = viewer_->take();
     if (auto* meshes = std::get_if<TopologyToSend>(&next)) {
-      queue_meshes(encode_shared(*meshes->topology, viewer_->meshes()));
+      queue_meshes(encode_shared(*meshes->topology, viewer_->selection().meshes));
     } else if (auto* frame = std::get_if<FrameToSend>(&next)) {
-      queue_frame(encode_shared(*frame->frame, viewer_->meshes(), topology_hash_), frame->skipped);
+      queue_frame(encode_shared(*frame->frame, viewer_->selection(), topology_hash_), frame->skipped);
+      sent_epoch_ = frame->frame->epoch;
+      sent_sequence_ = frame->frame->sequence;
     } else if (auto* end = std::get_if<EndOfStream>(&next)) {
       end_ = end->status;
     } else {
       return;
     }
   }
+}
+
+/// Where it is not due yet, the courier looks again when it will be.
+void WatchStream::queue_due_heartbeat() {
+  if (viewer_ == nullptr) return;
+  const Courier::Clock::time_point due = last_sent_ + heartbeat_;
+  if (Courier::Clock::now() < due) {
+    if (alarm_) return;
+    alarm_ = due;
+    courier_.wake_at(weak_from_this(), due);
+    return;
+  }
+  v1::WatchResponse response;
+  response.mutable_heartbeat()->set_epoch(sent_epoch_);
+  response.mutable_heartbeat()->set_sequence(sent_sequence_);
+  response.mutable_heartbeat()->set_unacknowledged_frames(static_cast<uint32_t>(viewer_->unacknowledged()));
+  const grpc::Slice slice(response.SerializeAsString());
+  outgoing_.emplace_back(&slice, 1);
 }
 
 void WatchStream::queue_meshes(const std::shared_ptr<const EncodedMessages>& meshes) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "server/rpc/courier.h"
@@ -27,8 +28,9 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   WatchStream(Courier& courier, std::string known_topology_hash)
       : courier_(courier), known_topology_hash_(std::move(known_topology_hash)) {}
 
-  /// A stream that shows what a session puts into the viewer. `on_done` is called once, at the end.
-  void begin(std::shared_ptr<Viewer> viewer, std::function<void()> on_done);
+  /// A stream that shows what a session puts into the viewer, and a heartbeat where that was nothing for so long.
+  /// `on_done` is called once, at the end.
+  void begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat, std::function<void()> on_done);
   /// A stream of messages that are all there.
   void begin_kept(const EncodedMessages& meshes, const EncodedMessages& frame);
   /// A stream that ends at once.
@@ -46,6 +48,7 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   void fetch();
   void queue_meshes(const std::shared_ptr<const EncodedMessages>& meshes);
   void queue_frame(const std::shared_ptr<const EncodedMessages>& frame, uint64_t skipped);
+  void queue_due_heartbeat();
 
   Courier& courier_;
   const std::string known_topology_hash_;
@@ -55,6 +58,11 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
 
   std::mutex mutex_;
   std::shared_ptr<Viewer> viewer_;
+  Courier::Clock::duration heartbeat_{};
+  Courier::Clock::time_point last_sent_{};
+  std::optional<Courier::Clock::time_point> alarm_;  ///< when it is woken to send a heartbeat
+  uint64_t sent_epoch_ = 0;
+  uint64_t sent_sequence_ = 0;
   std::string topology_hash_;
   std::deque<grpc::ByteBuffer> outgoing_;
   grpc::ByteBuffer at_hand_;

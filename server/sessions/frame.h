@@ -59,6 +59,13 @@ struct Frame {
   std::vector<simulation::FrameField> fields;
   EncodingCache encodings;
 
+  /// "<mesh>.<field>" of all.
+  std::vector<std::string> field_names() const {
+    std::vector<std::string> names;
+    for (const auto& field : fields) names.push_back(field.mesh + "." + field.name);
+    return names;
+  }
+
   size_t size_bytes() const {
     size_t bytes = 0;
     for (const auto& field : fields) bytes += field.values.size() * sizeof(float);

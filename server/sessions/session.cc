@@ -123,6 +123,7 @@ void Session::pause(Reply reply) {
     command("pause", {SimulationState::kRunning}, reply, [this] {
       leave_running();
       set_state(SimulationState::kPaused, "");
+      show_to_viewers(true);
       spdlog::info("simulations/{} paused at step {}", options_.id, view_.report.step);
       return absl::OkStatus();
     });
@@ -223,7 +224,7 @@ void Session::advance_one_step() {
   const Phase phase = simulation_->phase();
   if (phase != Phase::kFailed) record_step(wall_ms);
   if (phase != Phase::kRunning) return finish(state_of(phase), simulation_->reason());
-  show_to_viewers();
+  show_to_viewers(false);
 }
 
 void Session::set_state(SimulationState state, std::string reason) {

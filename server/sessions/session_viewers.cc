@@ -14,11 +14,13 @@ void Session::watch(std::shared_ptr<Viewer> viewer) {
     try {
       const auto meshes = topology();
       if (const absl::Status chosen = viewer->choose_meshes(*meshes); !chosen.ok()) return viewer->close(chosen);
+      const auto frame = last_frame_ != nullptr ? last_frame_ : make_frame(viewer->selection().meshes, false);
+      if (const absl::Status known = viewer->check_fields(frame->field_names()); !known.ok())
+        return viewer->close(known);
       viewer->show_topology(meshes);
-      if (last_frame_ != nullptr) return viewer->offer(last_frame_);
       if (preview_frame_ != nullptr) viewer->offer(preview_frame_);
-      viewer->offer(make_frame(viewer->meshes(), false));
-      viewers_.push_back(viewer);
+      viewer->offer(frame);
+      if (!frame->end) viewers_.push_back(viewer);
     } catch (const std::exception& error) {
       viewer->close(absl::InternalError(absl::StrCat("simulations/", options_.id, ": ", error.what())));
     }
@@ -69,14 +71,15 @@ std::shared_ptr<const Frame> Session::make_frame(const std::vector<std::string>&
   return frame;
 }
 
-void Session::show_to_viewers() {
+/// @param at_rest  no step follows soon
+void Session::show_to_viewers(bool at_rest) {
   std::erase_if(viewers_, [](const auto& viewer) { return viewer->closed(); });
   std::vector<std::shared_ptr<Viewer>> due;
   std::set<std::string> meshes;
   for (const auto& viewer : viewers_) {
-    if (!viewer->wants(simulation_->report().time)) continue;
+    if (!viewer->wants(simulation_->report().time, at_rest)) continue;
     due.push_back(viewer);
-    meshes.insert(viewer->meshes().begin(), viewer->meshes().end());
+    meshes.insert(viewer->selection().meshes.begin(), viewer->selection().meshes.end());
   }
   if (due.empty()) return;
   const auto frame = make_frame({meshes.begin(), meshes.end()}, false);

@@ -8,27 +8,61 @@
 #include "core/base/field_violations.h"
 
 namespace lipofill::server {
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Sorted and each once, so that viewers who ask for the same in another order share what is made for them.
+void sort_out(std::vector<std::string>& names) {
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+}
+
+std::vector<std::string> default_meshes(const std::vector<std::string>& known, const std::vector<std::string>& fields) {
+  std::vector<std::string> meshes;
+  const auto is_shown = [&fields](const std::string& mesh) {
+    if (fields.empty()) return mesh == "skin" || mesh.rfind("film/", 0) == 0;
+    return std::any_of(fields.begin(), fields.end(), [&](const std::string& field) { return mesh_of(field) == mesh; });
+  };
+  std::copy_if(known.begin(), known.end(), std::back_inserter(meshes), is_shown);
+  return meshes;
+}
+
+}  // namespace
 
 Viewer::Viewer(ViewerOptions options, std::function<void()> wake)
-    : options_(std::move(options)), wake_(std::move(wake)) {}
+    : options_(std::move(options)), wake_(std::move(wake)), selection_(options_.selection) {
+  sort_out(selection_.fields);
+}
 
 absl::Status Viewer::choose_meshes(const Topology& topology) {
   std::vector<std::string> known;
   for (const auto& mesh : topology.meshes) known.push_back(mesh.name);
-  meshes_.clear();
-  for (size_t i = 0; i < options_.meshes.size(); ++i) {
-    if (!topology.has(options_.meshes[i])) {
+  std::vector<std::string>& meshes = selection_.meshes;
+  for (size_t i = 0; i < meshes.size(); ++i) {
+    if (!contains(known, meshes[i])) {
       return field_violation(absl::StrCat("meshes[", i, "]"),
-                             absl::StrCat("is \"", options_.meshes[i], "\", there are ", absl::StrJoin(known, ", ")));
+                             absl::StrCat("is \"", meshes[i], "\", there are ", absl::StrJoin(known, ", ")));
     }
-    meshes_.push_back(options_.meshes[i]);
   }
-  if (meshes_.empty()) {
-    std::copy_if(known.begin(), known.end(), std::back_inserter(meshes_),
-                 [](const std::string& name) { return name == "skin" || name.rfind("film/", 0) == 0; });
+  if (meshes.empty()) meshes = default_meshes(known, selection_.fields);
+  sort_out(meshes);
+  return absl::OkStatus();
+}
+
+absl::Status Viewer::check_fields(const std::vector<std::string>& known) const {
+  for (size_t i = 0; i < options_.selection.fields.size(); ++i) {
+    const std::string& field = options_.selection.fields[i];
+    const std::string path = absl::StrCat("fields[", i, "]");
+    if (!contains(known, field)) {
+      return field_violation(path, absl::StrCat("is \"", field, "\", there are ", absl::StrJoin(known, ", ")));
+    }
+    if (!selection_.has_mesh(mesh_of(field))) {
+      return field_violation(path, absl::StrCat("is \"", field, "\", of a mesh that is not among `meshes`"));
+    }
   }
-  std::sort(meshes_.begin(), meshes_.end());
-  meshes_.erase(std::unique(meshes_.begin(), meshes_.end()), meshes_.end());
   return absl::OkStatus();
 }
 
@@ -40,10 +74,11 @@ void Viewer::show_topology(std::shared_ptr<const Topology> topology) {
   wake_();
 }
 
-bool Viewer::wants(double time_s) const {
+bool Viewer::wants(double time_s, bool at_rest, Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
+  if (end_ || (!at_rest && now < next_due_)) return false;
   // Times are sums of steps: a frame may come a rounding before its due time.
-  return !end_ && time_s >= next_due_s_ - 1e-9 * options_.interval_s;
+  return time_s >= next_due_s_ - 1e-9 * options_.interval_s;
 }
 
 void Viewer::offer(std::shared_ptr<const Frame> frame) {
@@ -54,6 +89,7 @@ void Viewer::offer(std::shared_ptr<const Frame> frame) {
       next_due_s_ = (std::floor(frame->time_s / options_.interval_s + 1e-9) + 1.0) * options_.interval_s;
     }
     if (was_seen(*frame)) return;
+    if (!frame->preview) offered_sequence_ = frame->sequence;
     const bool end = frame->end;
     queue_frame(std::move(frame));
     if (end && !end_) end_ = absl::OkStatus();
@@ -64,7 +100,9 @@ void Viewer::offer(std::shared_ptr<const Frame> frame) {
 /// A preview was seen by who saw a step after it. The last frame says that it is the last one, even to who saw the same
 /// state before.
 bool Viewer::was_seen(const Frame& frame) const {
-  if (frame.epoch != options_.seen_epoch || frame.end) return false;
+  if (frame.end) return false;
+  if (!frame.preview && frame.sequence == offered_sequence_) return true;
+  if (frame.epoch != options_.seen_epoch) return false;
   return frame.preview ? frame.sequence < options_.seen_sequence : frame.sequence <= options_.seen_sequence;
 }
 
@@ -105,15 +143,53 @@ bool Viewer::closed() const {
   return end_.has_value();
 }
 
-ToSend Viewer::take() {
+/// The last frame says that it is over, which no viewer need be kept from.
+bool Viewer::must_wait() const {
+  return options_.max_unacknowledged > 0 && unacknowledged_.size() >= options_.max_unacknowledged &&
+         !frames_.front()->end;
+}
+
+FrameToSend Viewer::take_frame(Clock::time_point now) {
+  FrameToSend next{std::move(frames_.front()), std::exchange(skipped_, 0)};
+  frames_.pop_front();
+  queued_bytes_ -= next.frame->size_bytes();
+  sent_epoch_ = next.frame->epoch;
+  sent_sequence_ = next.frame->sequence;
+  if (options_.max_unacknowledged > 0) unacknowledged_.push_back(sent_sequence_);
+  if (options_.max_rate_hz > 0.0) {
+    const std::chrono::duration<double> period(1.0 / options_.max_rate_hz);
+    next_due_ = now + std::chrono::ceil<Clock::duration>(period);
+  }
+  return next;
+}
+
+absl::Status Viewer::acknowledge(uint64_t epoch, uint64_t sequence) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (epoch != sent_epoch_) {
+      return field_violation("epoch", absl::StrCat("is ", epoch, ", that of the frames sent is ", sent_epoch_));
+    }
+    if (sequence > sent_sequence_) {
+      return field_violation("sequence", absl::StrCat("is ", sequence, ", the last frame sent is ", sent_sequence_));
+    }
+    std::erase_if(unacknowledged_, [sequence](uint64_t sent) { return sent <= sequence; });
+  }
+  wake_();
+  return absl::OkStatus();
+}
+
+size_t Viewer::unacknowledged() const {
+  const std::lock_guard lock(mutex_);
+  return unacknowledged_.size();
+}
+
+ToSend Viewer::take(Clock::time_point now) {
   const std::lock_guard lock(mutex_);
   if (end_ && !end_->ok()) topology_ = nullptr;
   if (topology_ != nullptr) return TopologyToSend{std::move(topology_)};
   if (!frames_.empty()) {
-    FrameToSend next{std::move(frames_.front()), std::exchange(skipped_, 0)};
-    frames_.pop_front();
-    queued_bytes_ -= next.frame->size_bytes();
-    return next;
+    if (must_wait()) return std::monostate();
+    return take_frame(now);
   }
   if (end_ && !end_taken_) {
     end_taken_ = true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -11,6 +12,7 @@
 
 #include "absl/status/status.h"
 #include "server/sessions/frame.h"
+#include "server/sessions/selection.h"
 
 namespace lipofill::server {
 
@@ -18,11 +20,14 @@ enum class Delivery { kLatest, kEvery };
 
 struct ViewerOptions {
   Delivery delivery = Delivery::kLatest;
-  std::vector<std::string> meshes;  ///< empty: "skin" and every film
-  double interval_s = 0.0;          ///< simulated time between frames; 0: every step
+  /// Meshes empty: those of the fields, or without these "skin" and every film.
+  Selection selection;
+  double interval_s = 0.0;   ///< simulated time between frames; 0: every step
+  double max_rate_hz = 0.0;  ///< frames a second of the clock, kLatest; 0: no bound
   uint64_t seen_epoch = 0;
   uint64_t seen_sequence = 0;
   size_t max_queued_bytes = size_t{64} << 20;  ///< kEvery
+  size_t max_unacknowledged = 0;               ///< frames on their way; 0: no bound
 };
 
 struct TopologyToSend {
@@ -42,37 +47,50 @@ using ToSend = std::variant<std::monostate, TopologyToSend, FrameToSend, EndOfSt
 /// reads.
 ///
 /// kLatest keeps one frame, and the preview beside it: a newer one takes its place and the skipped one is counted.
-/// kEvery keeps all up to a number of bytes; one frame more ends the stream with RESOURCE_EXHAUSTED. Checked by
-/// tests/unit/server/viewer_test.cc.
+/// kEvery keeps all up to a number of bytes; one frame more ends the stream with RESOURCE_EXHAUSTED. Where the client
+/// acknowledges frames, none but the last is taken while `max_unacknowledged` are on their way: what is taken after an
+/// acknowledgement is as new as that. Checked by tests/unit/server/viewer_test.cc.
 class Viewer {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// `wake` is called, on any thread and without a lock of this class, when there is something to take; it must not
   /// block.
   Viewer(ViewerOptions options, std::function<void()> wake);
 
   // For the session.
   void show_topology(std::shared_ptr<const Topology> topology);
-  /// Whether a frame of this simulated time is due at the interval.
-  bool wants(double time_s) const;
+  /// Whether a frame of this simulated time is due at the interval, and for the clock. At rest the clock does not
+  /// count: no later frame may come.
+  bool wants(double time_s, bool at_rest = false, Clock::time_point now = Clock::now()) const;
   void offer(std::shared_ptr<const Frame> frame);
   /// Ends the stream after what is queued when OK, at once when not.
   void close(absl::Status status);
   bool closed() const;
-  /// The meshes it is shown: those asked for, or "skin" and the films. INVALID_ARGUMENT naming one that there is not.
+  /// The meshes it is shown. INVALID_ARGUMENT naming one that there is not.
   absl::Status choose_meshes(const Topology& topology);
-  const std::vector<std::string>& meshes() const { return meshes_; }
+  /// Once the meshes are known: whether all fields asked for are among those of a frame, by full name.
+  absl::Status check_fields(const std::vector<std::string>& known) const;
+  const Selection& selection() const { return selection_; }
+
+  /// From the client: the frame of this sequence and all before it have been taken. INVALID_ARGUMENT for one that was
+  /// not sent.
+  absl::Status acknowledge(uint64_t epoch, uint64_t sequence);
 
   // For the stream.
-  ToSend take();
+  size_t unacknowledged() const;
+  ToSend take(Clock::time_point now = Clock::now());
 
  private:
   bool was_seen(const Frame& frame) const;
   void skip_waiting_frames();
   void queue_frame(std::shared_ptr<const Frame> frame);
+  FrameToSend take_frame(Clock::time_point now);
+  bool must_wait() const;
 
   const ViewerOptions options_;
   const std::function<void()> wake_;
-  std::vector<std::string> meshes_;
+  Selection selection_;
 
   mutable std::mutex mutex_;
   std::shared_ptr<const Topology> topology_;
@@ -80,6 +98,11 @@ class Viewer {
   size_t queued_bytes_ = 0;
   uint64_t skipped_ = 0;
   double next_due_s_ = 0.0;
+  Clock::time_point next_due_{};  ///< by max_rate_hz
+  std::optional<uint64_t> offered_sequence_;
+  std::deque<uint64_t> unacknowledged_;  ///< sequences, where max_unacknowledged is set
+  uint64_t sent_epoch_ = 0;
+  uint64_t sent_sequence_ = 0;
   std::optional<absl::Status> end_;
   bool end_taken_ = false;
 };

@@ -60,7 +60,7 @@ void WholeSteps::take_frame(const std::vector<std::string>& meshes, const std::s
   samples_.add("frame" + suffix, watch.lap());
   std::vector<std::string> names;
   for (const simulation::FrameField& field : frame.fields) names.push_back(field.mesh);
-  const server::EncodedMessages encoded = server::encode_frame(server::to_whole_frame(frame, names));
+  const server::EncodedMessages encoded = server::encode_frame(server::to_whole_frame(frame, {names}));
   samples_.add("encoding" + suffix, watch.lap());
   size_t& bytes = frame_bytes_["frame" + suffix];
   bytes = 0;

@@ -28,7 +28,7 @@ void frame_encoding(benchmark::State& state) {
   for (const simulation::FrameField& field : frame.fields) meshes.push_back(field.mesh);
   size_t bytes = 0;
   for (auto _ : state) {
-    for (const std::string& message : server::encode_frame(server::to_whole_frame(frame, meshes)).messages) {
+    for (const std::string& message : server::encode_frame(server::to_whole_frame(frame, {meshes})).messages) {
       bytes += message.size();
     }
   }

@@ -93,7 +93,7 @@ void encode(const simulation::Simulation& simulation) {
   server::Frame frame;
   frame.fields = simulation.frame(meshes);
   const auto encoded = server::encode_shared(topology, meshes);
-  server::encode_shared(frame, meshes, encoded->topology_hash);
+  server::encode_shared(frame, {meshes}, encoded->topology_hash);
 }
 
 absl::Status await_first_frame(const ServedPlan& served, const std::string& id) {

@@ -54,9 +54,17 @@ bool Watcher::next(SeenFrame& frame) {
       for (const auto& array : response.mesh().arrays()) append(meshes, array);
       continue;
     }
+    if (response.has_heartbeat()) {
+      heartbeats.push_back(response.heartbeat());
+      continue;
+    }
     frame.slice = response.frame();
     frame.skipped = response.frame().skipped_frames();
-    for (const auto& array : response.frame().fields()) append(frame.bytes, array);
+    for (v1::ArraySlice array : response.frame().fields()) {
+      append(frame.bytes, array);
+      array.clear_data();
+      frame.arrays[array.name()] = std::move(array);
+    }
     frame.slice.clear_fields();
     if (response.frame().last()) return true;
   }

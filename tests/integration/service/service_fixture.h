@@ -36,8 +36,9 @@ std::map<std::string, std::string> violations_of(const google::rpc::Status& stat
 
 /// What a viewer put together from the slices of one frame.
 struct SeenFrame {
-  v1::FrameSlice slice;                      ///< of the last slice, without its arrays
-  std::map<std::string, std::string> bytes;  ///< by name of the array
+  v1::FrameSlice slice;                          ///< of the last slice, without its arrays
+  std::map<std::string, std::string> bytes;      ///< by name of the array
+  std::map<std::string, v1::ArraySlice> arrays;  ///< what else is told of them
   uint64_t skipped = 0;
 };
 
@@ -54,6 +55,7 @@ class Watcher {
 
   std::map<std::string, std::string> meshes;  ///< bytes by name of the array
   std::string topology_hash;
+  std::vector<v1::Heartbeat> heartbeats;
 
  private:
   std::unique_ptr<v1::FrameService::Stub> stub_;

@@ -1,5 +1,7 @@
 // What viewers of a simulation receive.
 
+#include <cstring>
+#include <functional>
 #include <thread>
 
 #include "tests/integration/service/run_fixture.h"
@@ -7,7 +9,37 @@
 namespace lipofill::testing {
 namespace {
 
-using WatchTest = RunTest;
+class WatchTest : public RunTest {
+ protected:
+  grpc::Status acknowledge(const std::string& viewer, const SeenFrame& frame) {
+    v1::AcknowledgeFrameRequest request;
+    request.set_simulation("simulations/x");
+    request.set_viewer(viewer);
+    request.set_epoch(frame.slice.epoch());
+    request.set_sequence(frame.slice.sequence());
+    v1::AcknowledgeFrameResponse response;
+    return call(*frames_, &v1::FrameService::Stub::AcknowledgeFrame, request, response);
+  }
+};
+
+/// That the codes of `coded` stand for the values of `exact`, as closely as they say.
+void expect_close(const SeenFrame& exact, const SeenFrame& coded, const std::string& name) {
+  const v1::ArraySlice& array = coded.arrays.at(name);
+  ASSERT_EQ(array.type(), v1::UINT16);
+  const std::string& values = exact.bytes.at(name);
+  const std::string& codes = coded.bytes.at(name);
+  ASSERT_EQ(codes.size() * 2, values.size());
+  EXPECT_GT(array.max_error(), 0.0);
+  for (size_t k = 0; k < codes.size() / 2; ++k) {
+    uint16_t code = 0;
+    float value = 0.0f;
+    std::memcpy(&code, codes.data() + 2 * k, sizeof code);
+    std::memcpy(&value, values.data() + 4 * k, sizeof value);
+    const int c = static_cast<int>(k % 3);
+    const double decoded = array.box_min(c) + code / 65535.0 * (array.box_max(c) - array.box_min(c));
+    ASSERT_NEAR(decoded, value, array.max_error());
+  }
+}
 
 TEST_F(WatchTest, EveryViewerGetsEveryFrameAndResumes) {
   create(0.2, "x", false);
@@ -92,6 +124,156 @@ TEST_F(WatchTest, ShowsWhatIsAskedFor) {
   const grpc::Status status = lost.finish();
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_EQ(violations_of(status).count("meshes[0]"), 1u);
+}
+
+TEST_F(WatchTest, SendsTheFieldsAskedForAsCodes) {
+  create(0.05, "x", false);
+  v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::EVERY);
+  request.add_fields("skin.displacement");
+  Watcher exact(*channel_, request);
+  request.set_field_type(v1::UINT16);
+  Watcher coded(*channel_, request);
+  SeenFrame a;
+  SeenFrame b;
+  ASSERT_TRUE(exact.next(a));
+  ASSERT_TRUE(coded.next(b));
+  EXPECT_EQ(exact.meshes.count("film/plane.points"), 0u) << "the meshes are those of the fields";
+  ASSERT_TRUE(start("simulations/x").ok());
+  exact.drain(&a);
+  coded.drain(&b);
+  ASSERT_TRUE(a.slice.end());
+  ASSERT_EQ(a.bytes.size(), 1u);
+  expect_close(a, b, "skin.displacement");
+
+  await_end("simulations/x");
+  Watcher kept(*channel_, request);
+  ASSERT_TRUE(kept.next(b)) << "of the result in the store";
+  ASSERT_EQ(b.bytes.size(), 1u);
+  expect_close(a, b, "skin.displacement");
+}
+
+TEST_F(WatchTest, KeepsToTheRateButShowsThePauseAndTheEnd) {
+  create(1000.0, "x", false);
+  v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::LATEST);
+  request.set_max_rate_hz(0.001);
+  Watcher watcher(*channel_, request);
+  SeenFrame frame;
+  ASSERT_TRUE(watcher.next(frame));
+  EXPECT_EQ(frame.slice.sequence(), 0u);
+  ASSERT_TRUE(start("simulations/x").ok());
+  while (get_simulation("simulations/x").summary().steps() < 5) std::this_thread::yield();
+  v1::Simulation paused;
+  ASSERT_TRUE(pause("simulations/x", &paused).ok());
+  ASSERT_TRUE(watcher.next(frame));
+  EXPECT_EQ(frame.slice.sequence(), paused.summary().steps());
+  EXPECT_EQ(frame.skipped, 0u) << "left out as asked, not for being slow";
+  ASSERT_TRUE(resume("simulations/x").ok());
+  v1::Simulation stopped;
+  ASSERT_TRUE(stop("simulations/x", &stopped).ok());
+  ASSERT_TRUE(watcher.next(frame));
+  EXPECT_EQ(frame.slice.sequence(), stopped.summary().steps());
+  EXPECT_TRUE(frame.slice.end());
+}
+
+TEST_F(WatchTest, HearsHeartbeatsWhileNothingHappens) {
+  create(0.05, "x", false);
+  v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::LATEST);
+  request.set_heartbeat_ms(100);
+  Watcher watcher(*channel_, request);
+  SeenFrame frame;
+  ASSERT_TRUE(watcher.next(frame));
+  std::this_thread::sleep_for(std::chrono::milliseconds(450));
+  ASSERT_TRUE(start("simulations/x").ok());
+  ASSERT_TRUE(watcher.next(frame));
+  EXPECT_GE(watcher.heartbeats.size(), 3u);
+  EXPECT_EQ(watcher.heartbeats.at(0).epoch(), frame.slice.epoch());
+  EXPECT_EQ(watcher.heartbeats.at(0).sequence(), 0u);
+  watcher.drain(&frame);
+  EXPECT_TRUE(frame.slice.end());
+  EXPECT_TRUE(watcher.finish().ok());
+}
+
+TEST_F(WatchTest, AFrameIsAsNewAsTheAcknowledgementBeforeIt) {
+  create(1000.0, "x", false);
+  v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::LATEST);
+  request.set_max_unacknowledged_frames(1);
+  request.set_viewer("surgeon");
+  request.set_heartbeat_ms(100);
+  Watcher watcher(*channel_, request);
+  SeenFrame frame;
+  ASSERT_TRUE(watcher.next(frame));
+  ASSERT_TRUE(start("simulations/x").ok());
+  for (int round = 0; round < 5; ++round) {
+    // The viewer is busy for some steps.
+    const uint64_t busy_until = frame.slice.sequence() + 20;
+    while (get_simulation("simulations/x").summary().steps() < busy_until) std::this_thread::yield();
+    ASSERT_TRUE(acknowledge("surgeon", frame).ok());
+    ASSERT_TRUE(watcher.next(frame));
+    EXPECT_GE(frame.slice.sequence() + 1, busy_until) << "a step is told a moment before its frame is there";
+    EXPECT_GE(frame.skipped, 18u);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  ASSERT_TRUE(stop("simulations/x").ok());
+  ASSERT_TRUE(watcher.next(frame));
+  EXPECT_TRUE(frame.slice.end()) << "which comes without an acknowledgement";
+  ASSERT_FALSE(watcher.heartbeats.empty());
+  EXPECT_EQ(watcher.heartbeats.back().unacknowledged_frames(), 1u);
+}
+
+TEST_F(WatchTest, RefusesAcknowledgementsOfWhatIsNot) {
+  create(1000.0, "x", false);
+  v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::LATEST);
+  request.set_max_unacknowledged_frames(1);
+  request.set_viewer("surgeon");
+  Watcher watcher(*channel_, request);
+  SeenFrame frame;
+  ASSERT_TRUE(watcher.next(frame));
+  EXPECT_EQ(acknowledge("nurse", frame).error_code(), grpc::StatusCode::NOT_FOUND);
+  SeenFrame future = frame;
+  future.slice.set_sequence(7);
+  EXPECT_EQ(violations_of(acknowledge("surgeon", future)).count("sequence"), 1u);
+  // The same viewer on a new connection: the daemon need not find out about the old one first.
+  Watcher again(*channel_, request);
+  ASSERT_TRUE(again.next(frame));
+  EXPECT_TRUE(acknowledge("surgeon", frame).ok());
+  EXPECT_FALSE(watcher.next(frame));
+  EXPECT_EQ(watcher.finish().error_code(), grpc::StatusCode::ABORTED);
+}
+
+TEST_F(WatchTest, NamesWhatCannotBeWatched) {
+  create(0.05, "x", false);
+  const auto refused = [this](const std::string& field, const std::function<void(v1::WatchRequest&)>& change) {
+    v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::EVERY);
+    change(request);
+    Watcher watcher(*channel_, request);
+    SeenFrame frame;
+    EXPECT_FALSE(watcher.next(frame)) << field;
+    const grpc::Status status = watcher.finish();
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << field;
+    EXPECT_EQ(violations_of(status).count(field), 1u) << field << ": " << status.error_message();
+  };
+  refused("fields[0]", [](v1::WatchRequest& request) { request.add_fields("skin.colour"); });
+  refused("fields[0]", [](v1::WatchRequest& request) {
+    request.add_meshes("tissue");
+    request.add_fields("skin.pressure");
+  });
+  refused("heartbeat_ms", [](v1::WatchRequest& request) { request.set_heartbeat_ms(1.0); });
+  refused("viewer", [](v1::WatchRequest& request) { request.set_max_unacknowledged_frames(1); });
+  refused("viewer", [](v1::WatchRequest& request) { request.set_viewer("surgeon"); });
+  refused("viewer", [](v1::WatchRequest& request) {
+    request.set_max_unacknowledged_frames(1);
+    request.set_viewer("The Surgeon");
+  });
+  refused("max_unacknowledged_frames", [](v1::WatchRequest& request) {
+    request.set_max_unacknowledged_frames(2000);
+    request.set_viewer("surgeon");
+  });
+  refused("field_type", [](v1::WatchRequest& request) { request.set_field_type(v1::UINT8); });
+  refused("max_rate_hz", [](v1::WatchRequest& request) { request.set_max_rate_hz(10.0); });
+  refused("max_rate_hz", [](v1::WatchRequest& request) {
+    request.set_delivery(v1::WatchRequest::LATEST);
+    request.set_max_rate_hz(0.0);
+  });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 
 namespace lipofill::client {
 namespace {
@@ -74,6 +75,42 @@ TEST(ArrayAssembler, RefusesShapesNoMeshHas) {
   v1::ArraySlice shapeless = slice("skin.displacement", 1, 0, {});
   shapeless.clear_shape();
   EXPECT_THAT(std::string(assembler.add(shapeless).message()), HasSubstr("no usable shape"));
+}
+
+/// Codes of two points.
+v1::ArraySlice coded_slice(const std::vector<uint16_t>& codes, uint64_t offset = 0) {
+  v1::ArraySlice result = slice("skin.displacement", 2, offset, {});
+  result.set_type(v1::UINT16);
+  result.set_data(codes.data(), codes.size() * sizeof(uint16_t));
+  for (const double low : {-1.0, 0.0, 5.0}) result.add_box_min(low);
+  for (const double high : {1.0, 131070.0, 5.0}) result.add_box_max(high);
+  result.set_max_error(1.5);
+  return result;
+}
+
+TEST(ArrayAssembler, TurnsCodesIntoTheValuesTheyStandFor) {
+  ArrayAssembler assembler;
+  ASSERT_TRUE(assembler.add(coded_slice({0, 1, 0, 65535})).ok());
+  ASSERT_TRUE(assembler.add(coded_slice({50000, 7}, 8)).ok());
+  const auto arrays = assembler.take();
+  ASSERT_TRUE(arrays.ok()) << arrays.status();
+  EXPECT_EQ((*arrays)[0].type, ElementType::kFloat32);
+  EXPECT_THAT((*arrays)[0].floats(), ElementsAre(-1.0f, 2.0f, 5.0f, 1.0f, 100000.0f, 5.0f));
+  EXPECT_EQ((*arrays)[0].max_error, 1.5);
+}
+
+TEST(ArrayAssembler, RefusesCodesWithoutABox) {
+  for (const int kind : {0, 1, 2}) {
+    v1::ArraySlice coded = coded_slice({0, 1, 0, 65535, 50000, 7});
+    if (kind == 0) coded.clear_box_min();
+    if (kind == 1) coded.mutable_box_max()->RemoveLast();
+    if (kind == 2) coded.set_box_max(0, std::numeric_limits<double>::infinity());
+    ArrayAssembler assembler;
+    EXPECT_THAT(std::string(assembler.add(coded).message()), HasSubstr("without a usable box"));
+  }
+  ArrayAssembler truncated;
+  ASSERT_TRUE(truncated.add(coded_slice({0, 1, 0})).ok());
+  EXPECT_THAT(std::string(truncated.take().status().message()), HasSubstr("ended after 6 of 12 bytes"));
 }
 
 TEST(ArrayAssembler, ReadsWholeNumbersInPlace) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <future>
 #include <thread>
 
 #include "scripted_service.h"
@@ -11,6 +12,7 @@ namespace lipofill::client {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using Writer = grpc::ServerWriter<v1::WatchResponse>;
 
 void send_meshes(Writer* writer) {
@@ -110,6 +112,76 @@ TEST_F(FrameWatcherTest, TellsThePreviewFromASteps) {
   };
   EXPECT_TRUE(watch(Connection(server.address()), {}, noting).ok());
   EXPECT_THAT(previews, ElementsAre(false, true, false));
+}
+
+TEST_F(FrameWatcherTest, AcknowledgesEachFrameOnceItIsTaken) {
+  service_.streams = {[](const v1::WatchRequest&, Writer* writer) {
+                        send_frame(writer, 3, false);
+                        return grpc::Status(grpc::StatusCode::UNAVAILABLE, "gone");
+                      },
+                      [](const v1::WatchRequest&, Writer* writer) {
+                        send_frame(writer, 4, false);
+                        send_frame(writer, 5, true);
+                        return grpc::Status::OK;
+                      }};
+  service_.acknowledgement = grpc::Status(grpc::StatusCode::NOT_FOUND, "it has ended");
+  const LocalServer server(&service_);
+  v1::WatchRequest request;
+  request.set_simulation("simulations/a");
+  request.set_max_unacknowledged_frames(1);
+  EXPECT_TRUE(watch(Connection(server.address()), request, handlers()).ok());
+  EXPECT_THAT(frames_, ElementsAre(3, 4, 5));
+  ASSERT_EQ(service_.acknowledged.size(), 2u) << "all but the last";
+  EXPECT_EQ(service_.acknowledged[0].simulation(), "simulations/a");
+  EXPECT_EQ(service_.acknowledged[0].epoch(), 9u);
+  EXPECT_EQ(service_.acknowledged[0].sequence(), 3u);
+  EXPECT_EQ(service_.acknowledged[1].sequence(), 4u);
+  EXPECT_EQ(service_.acknowledged[0].viewer().size(), 17u);
+  EXPECT_EQ(service_.requests[1].viewer(), service_.acknowledged[0].viewer()) << "the same takes its place again";
+}
+
+TEST_F(FrameWatcherTest, ARefusedAcknowledgementIsTold) {
+  service_.streams = {[](const v1::WatchRequest&, Writer* writer) {
+    send_frame(writer, 3, false);
+    send_frame(writer, 4, true);
+    return grpc::Status::OK;
+  }};
+  service_.acknowledgement = grpc::Status(grpc::StatusCode::PERMISSION_DENIED, "not yours");
+  const LocalServer server(&service_);
+  v1::WatchRequest request;
+  request.set_max_unacknowledged_frames(1);
+  EXPECT_TRUE(absl::IsPermissionDenied(watch(Connection(server.address()), request, handlers())));
+}
+
+TEST_F(FrameWatcherTest, ASilentDaemonIsABrokenStream) {
+  std::promise<void> told;
+  service_.streams = {[&told](const v1::WatchRequest&, Writer* writer) {
+                        send_frame(writer, 3, false);
+                        told.get_future().wait();
+                        return grpc::Status::OK;
+                      },
+                      [](const v1::WatchRequest&, Writer* writer) {
+                        v1::WatchResponse response;
+                        response.mutable_heartbeat();
+                        for (int k = 0; k < 15; ++k) {
+                          std::this_thread::sleep_for(std::chrono::milliseconds(100));
+                          writer->Write(response);
+                        }
+                        send_frame(writer, 5, true);
+                        return grpc::Status::OK;
+                      }};
+  const LocalServer server(&service_);
+  v1::WatchRequest request;
+  request.set_heartbeat_ms(250);
+  WatchHandlers noting = handlers();
+  absl::Status reason;
+  noting.on_resume = [&](const absl::Status& status) {
+    if (reason.ok()) told.set_value();
+    reason = status;
+  };
+  EXPECT_TRUE(watch(Connection(server.address()), request, noting).ok());
+  EXPECT_THAT(std::string(reason.message()), HasSubstr("not even a heartbeat"));
+  EXPECT_THAT(frames_, ElementsAre(3, 5)) << "heartbeats for longer than that are no silence";
 }
 
 TEST_F(FrameWatcherTest, AnErrorOfTheSimulationIsNotRetried) {

@@ -21,7 +21,14 @@ class BreakingFrameService : public v1::FrameService::Service {
   using Stream = std::function<grpc::Status(const v1::WatchRequest&, grpc::ServerWriter<v1::WatchResponse>*)>;
   std::vector<Stream> streams;
   std::vector<v1::WatchRequest> requests;
+  std::vector<v1::AcknowledgeFrameRequest> acknowledged;
+  grpc::Status acknowledgement;
 
+  grpc::Status AcknowledgeFrame(grpc::ServerContext*, const v1::AcknowledgeFrameRequest* request,
+                                v1::AcknowledgeFrameResponse*) override {
+    acknowledged.push_back(*request);
+    return acknowledgement;
+  }
   grpc::Status Watch(grpc::ServerContext*, const v1::WatchRequest* request,
                      grpc::ServerWriter<v1::WatchResponse>* writer) override {
     requests.push_back(*request);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <future>
 #include <latch>
 
@@ -47,6 +48,28 @@ TEST(Courier, DeliversToEachInTurnAndNotToWhoIsGone) {
   last_served.get_future().wait();
   EXPECT_EQ(slow->delivered, 1);
   EXPECT_EQ(a->delivered, 3);
+}
+
+TEST(Courier, DeliversAtTheTimeThatWasSetLast) {
+  using Clock = Courier::Clock;
+  Courier courier;
+  const Clock::time_point begin = Clock::now();
+  std::promise<Clock::time_point> early_served;
+  std::promise<Clock::time_point> late_served;
+  const auto early = std::make_shared<Counter>();
+  early->on_deliver = [&] { early_served.set_value(Clock::now()); };
+  const auto late = std::make_shared<Counter>();
+  late->on_deliver = [&] { late_served.set_value(Clock::now()); };
+  const auto forgotten = std::make_shared<Counter>();
+  courier.wake_at(early, begin + std::chrono::hours(1));
+  courier.wake_at(late, begin + std::chrono::milliseconds(60));
+  courier.wake_at(forgotten, begin + std::chrono::milliseconds(20));
+  courier.wake_at(early, begin + std::chrono::milliseconds(30));
+  courier.forget(forgotten);
+  EXPECT_GE(early_served.get_future().get() - begin, std::chrono::milliseconds(30));
+  EXPECT_GE(late_served.get_future().get() - begin, std::chrono::milliseconds(60));
+  EXPECT_EQ(early->delivered, 1);
+  EXPECT_EQ(forgotten->delivered, 0);
 }
 
 TEST(Courier, DeliversWhatIsWokenFromADelivery) {

@@ -34,7 +34,7 @@ v1::FrameSlice receive(const std::string& body, uint64_t skipped) {
 TEST(FrameEncoding, GoesRoundWithTheSkippedFrames) {
   const auto made = big_frame(2);
   const Frame& frame = *made;
-  const auto encoded = encode_shared(frame, {"film/deep", "skin"}, "hash");
+  const auto encoded = encode_shared(frame, {{"film/deep", "skin"}}, "hash");
   ASSERT_EQ(encoded->messages.size(), 1u);
   for (const uint64_t skipped : {uint64_t{0}, uint64_t{1}, uint64_t{300}, ~uint64_t{0}}) {
     const v1::FrameSlice slice = receive(encoded->messages[0], skipped);
@@ -58,7 +58,7 @@ TEST(FrameEncoding, MarksAPreviewAndLeavesOutMeshesItHasNot) {
   Frame frame;
   frame.preview = true;
   frame.fields.push_back({"skin", "pressure", "Pa", simulation::FieldLocation::kPoint, 1, {1.0f}});
-  const auto encoded = encode_shared(frame, {"film/deep", "skin"}, "hash");
+  const auto encoded = encode_shared(frame, {{"film/deep", "skin"}}, "hash");
   ASSERT_EQ(encoded->messages.size(), 1u);
   const v1::FrameSlice slice = receive(encoded->messages[0], 0);
   EXPECT_TRUE(slice.preview());
@@ -70,18 +70,42 @@ TEST(FrameEncoding, MarksAPreviewAndLeavesOutMeshesItHasNot) {
 TEST(FrameEncoding, SharesOneEncodingASetOfMeshes) {
   const auto made = big_frame(2);
   const Frame& frame = *made;
-  EXPECT_EQ(encode_shared(frame, {"skin"}, "h"), encode_shared(frame, {"skin"}, "h"));
-  const auto film = encode_shared(frame, {"film/deep"}, "h2");
+  EXPECT_EQ(encode_shared(frame, {{"skin"}}, "h"), encode_shared(frame, {{"skin"}}, "h"));
+  const auto film = encode_shared(frame, {{"film/deep"}}, "h2");
   const v1::FrameSlice slice = receive(film->messages[0], 0);
   ASSERT_EQ(slice.fields_size(), 1);
   EXPECT_EQ(slice.fields(0).name(), "film/deep.wet");
+}
+
+TEST(FrameEncoding, SendsTheFieldsAskedForInTheTypeAskedFor) {
+  const auto made = big_frame(300'000);  // 1.8 MB of codes
+  const Selection selection{{"film/deep", "skin"}, {"skin.displacement"}, true};
+  const auto encoded = encode_shared(*made, selection, "h");
+  EXPECT_NE(encoded, encode_shared(*made, {{"film/deep", "skin"}}, "h"));
+  EXPECT_NE(encoded, encode_shared(*made, {{"film/deep", "skin"}, {"skin.displacement"}}, "h"));
+  EXPECT_EQ(encoded, encode_shared(*made, selection, "h"));
+  ASSERT_EQ(encoded->messages.size(), 2u);
+  size_t bytes = 0;
+  for (const std::string& message : encoded->messages) {
+    const v1::FrameSlice slice = receive(message, 0);
+    ASSERT_EQ(slice.fields_size(), 1);
+    EXPECT_EQ(slice.fields(0).type(), v1::UINT16);
+    EXPECT_EQ(slice.fields(0).box_max_size(), 3) << "every slice can be read on its own";
+    EXPECT_GT(slice.fields(0).max_error(), 0.0);
+    bytes += slice.fields(0).data().size();
+  }
+  EXPECT_EQ(bytes, 300'000u * 3 * 2);
+
+  v1::FrameSlice kept = to_whole_frame(*made, {{"film/deep", "skin"}});
+  keep_selection(selection, kept);
+  EXPECT_EQ(kept.SerializeAsString(), to_whole_frame(*made, selection).SerializeAsString());
 }
 
 TEST(FrameEncoding, CutsLargeArraysAndLosesNoByte) {
   const size_t points = 200'000;  // 2.4 MB
   const auto made = big_frame(points);
   const Frame& frame = *made;
-  const auto encoded = encode_shared(frame, {"film/deep", "skin"}, "h");
+  const auto encoded = encode_shared(frame, {{"film/deep", "skin"}}, "h");
   ASSERT_EQ(encoded->messages.size(), 3u);
   std::string bytes;
   for (size_t i = 0; i < encoded->messages.size(); ++i) {

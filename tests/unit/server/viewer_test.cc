@@ -3,39 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/base/field_violations.h"
+#include "tests/unit/server/viewer_frames.h"
 
 namespace lipofill::server {
 namespace {
 
 using ::testing::ElementsAre;
-
-std::shared_ptr<const Frame> frame(uint64_t sequence, double time_s = 0.0, bool end = false, size_t floats = 10) {
-  auto made = std::make_shared<Frame>();
-  made->epoch = 5;
-  made->sequence = sequence;
-  made->time_s = time_s;
-  made->end = end;
-  made->fields.push_back({"skin", "pressure", "Pa", simulation::FieldLocation::kPoint, 1, std::vector<float>(floats)});
-  return made;
-}
-
-FrameToSend take_frame(Viewer& viewer) {
-  const ToSend next = viewer.take();
-  const auto* taken = std::get_if<FrameToSend>(&next);
-  EXPECT_NE(taken, nullptr);
-  return taken == nullptr ? FrameToSend{} : *taken;
-}
-
-bool has_nothing(Viewer& viewer) {
-  return std::holds_alternative<std::monostate>(viewer.take());
-}
-
-absl::Status take_end(Viewer& viewer) {
-  const ToSend next = viewer.take();
-  const auto* end = std::get_if<EndOfStream>(&next);
-  return end == nullptr ? absl::UnknownError("not the end") : end->status;
-}
 
 TEST(Viewer, LatestSkipsAndCounts) {
   int wakes = 0;
@@ -190,19 +163,14 @@ TEST(Viewer, TellsTheEndEvenOfASeenFrame) {
   EXPECT_TRUE(take_end(viewer).ok());
 }
 
-TEST(Viewer, ShowsSkinAndFilmsUnlessAsked) {
-  Topology topology;
-  for (const char* name : {"skin", "scan", "film/deep", "tissue"}) topology.meshes.push_back({name, {}, {}, 3});
+TEST(Viewer, IsNotShownTheSameStateTwice) {
   Viewer viewer({}, [] {});
-  ASSERT_TRUE(viewer.choose_meshes(topology).ok());
-  EXPECT_THAT(viewer.meshes(), ElementsAre("film/deep", "skin"));
-
-  ViewerOptions options;
-  options.meshes = {"tissue", "bone"};
-  Viewer picky(options, [] {});
-  const absl::Status refused = picky.choose_meshes(topology);
-  ASSERT_EQ(field_violations_of(refused).size(), 1u) << refused;
-  EXPECT_EQ(field_violations_of(refused)[0].field, "meshes[1]");
+  viewer.offer(frame(3));
+  EXPECT_EQ(take_frame(viewer).frame->sequence, 3u);
+  viewer.offer(frame(3));
+  EXPECT_TRUE(has_nothing(viewer));
+  viewer.offer(frame(3, 0.0, true));
+  EXPECT_TRUE(take_frame(viewer).frame->end) << "that it is the last one is news";
 }
 
 TEST(EncodingCacheTest, EncodesOnceForEachSet) {

@@ -2,6 +2,7 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -19,7 +20,7 @@ constexpr uint32_t kFramesAhead = 2;
 struct Options {
   std::string simulation;
   double interval_ms = 0.0;
-  double max_rate_hz = 0.0;
+  std::optional<double> max_rate_hz;
   bool every = false;
   bool compact = false;
 };
@@ -73,7 +74,7 @@ absl::StatusOr<ExitCode> watch_simulation(Application& application, const Option
   if (!options.every) request.set_max_unacknowledged_frames(kFramesAhead);
   request.add_fields("skin.displacement");
   request.add_fields("skin.pressure");
-  if (options.max_rate_hz > 0.0) request.set_max_rate_hz(options.max_rate_hz);
+  if (options.max_rate_hz) request.set_max_rate_hz(*options.max_rate_hz);
   if (options.compact) request.set_field_type(v1::UINT16);
   if (options.interval_ms > 0.0) request.set_interval_ms(options.interval_ms);
   WatchHandlers handlers;
@@ -102,7 +103,9 @@ void add_watch_command(CLI::App& root, Application& application) {
   command->add_option("simulation", options->simulation, "simulations/ID, or the ID alone")->required();
   command->add_option("--interval-ms", options->interval_ms, "simulated time between frames; default: every step")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--max-rate-hz", options->max_rate_hz, "frames a second of the clock; default: no bound")
+  command
+      ->add_option("--max-rate-hz", options->max_rate_hz,
+                   "at most so many frames a second of the clock; 0: no bound; default: 60, no bound with --every")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--compact", options->compact, "16-bit fields: half the bytes, good to 1/130,000 of their range");
   command->add_flag("--every", options->every, "no frame is left out, however slow the reader");

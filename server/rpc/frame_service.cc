@@ -24,13 +24,20 @@ absl::StatusOr<v1::WatchRequest> parse_request(const grpc::ByteBuffer& bytes) {
 void check_rate(const v1::WatchRequest& request, FieldViolations& violations) {
   constexpr double kLeastRate = 1e-3;
   constexpr double kMostRate = 1000.0;
-  if (!request.has_max_rate_hz()) return;
+  if (request.max_rate_hz() == 0.0) return;
   violations.check_range("max_rate_hz", request.max_rate_hz(), kLeastRate, kMostRate, "Hz");
   if (request.delivery() == v1::WatchRequest::EVERY) {
     violations.add("max_rate_hz",
                    absl::StrCat("is ", request.max_rate_hz(), " Hz with delivery EVERY, which leaves no ",
                                 "frame out; use LATEST, or interval_ms"));
   }
+}
+
+/// As fast as screens are, where nothing else is asked for.
+double rate_of(const v1::WatchRequest& request) {
+  constexpr double kScreenRate = 60.0;
+  if (request.has_max_rate_hz()) return request.max_rate_hz();
+  return request.delivery() == v1::WatchRequest::EVERY ? 0.0 : kScreenRate;
 }
 
 void check_acknowledgement(const v1::WatchRequest& request, FieldViolations& violations) {
@@ -70,7 +77,7 @@ absl::StatusOr<ViewerOptions> to_viewer_options(const v1::WatchRequest& request)
   options.selection.meshes.assign(request.meshes().begin(), request.meshes().end());
   options.selection.fields.assign(request.fields().begin(), request.fields().end());
   options.selection.quantised = request.field_type() == v1::UINT16;
-  options.max_rate_hz = request.max_rate_hz();
+  options.max_rate_hz = rate_of(request);
   options.max_unacknowledged = request.max_unacknowledged_frames();
   options.interval_s = request.interval_ms() * 1e-3;
   options.seen_epoch = request.seen_epoch();

@@ -79,6 +79,7 @@ class CrowdTest : public ServiceTest {
     v1::WatchRequest request;
     request.set_simulation("simulations/crowd");
     request.set_delivery(delivery);
+    request.set_max_rate_hz(0.0);
     request.set_viewer(name);
     request.set_max_unacknowledged_frames(name.empty() ? 0 : 1);
     Spectator& added = spectators_.emplace_back(daemon_->address(), request);

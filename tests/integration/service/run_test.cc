@@ -2,6 +2,7 @@
 
 #include <thread>
 
+#include "absl/strings/str_cat.h"
 #include "tests/integration/service/run_fixture.h"
 
 namespace lipofill::testing {
@@ -44,7 +45,7 @@ TEST_F(RunTest, GivesTheSameBytesBesideOthersAndUnderWatch) {
   std::vector<std::unique_ptr<Watcher>> watchers;
   for (int i = 0; i < 4; ++i) create(0.3, "x" + std::to_string(i), false);
   for (int i = 0; i < 4; ++i) {
-    const std::string name = "simulations/x" + std::to_string(i);
+    const std::string name = absl::StrCat("simulations/x", i);
     watchers.push_back(std::make_unique<Watcher>(*channel_, watch_request(name, v1::WatchRequest::LATEST)));
     EXPECT_TRUE(start(name).ok());
   }

@@ -35,6 +35,7 @@ class StallTest : public ServiceTest {
     v1::WatchRequest request;
     request.set_simulation("simulations/x");
     request.set_delivery(delivery);
+    request.set_max_rate_hz(0.0);
     return request;
   }
   void start(double end_s) {

@@ -196,6 +196,7 @@ TEST_F(WatchTest, HearsHeartbeatsWhileNothingHappens) {
 TEST_F(WatchTest, AFrameIsAsNewAsTheAcknowledgementBeforeIt) {
   create(1000.0, "x", false);
   v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::LATEST);
+  request.set_max_rate_hz(0.0);
   request.set_max_unacknowledged_frames(1);
   request.set_viewer("surgeon");
   request.set_heartbeat_ms(100);
@@ -272,7 +273,7 @@ TEST_F(WatchTest, NamesWhatCannotBeWatched) {
   refused("max_rate_hz", [](v1::WatchRequest& request) { request.set_max_rate_hz(10.0); });
   refused("max_rate_hz", [](v1::WatchRequest& request) {
     request.set_delivery(v1::WatchRequest::LATEST);
-    request.set_max_rate_hz(0.0);
+    request.set_max_rate_hz(1001.0);
   });
 }
 

@@ -113,7 +113,7 @@ INSTANTIATE_TEST_SUITE_P(
                   s.films[0].connective_tissue = {1e6, 10.0};
                 },
                 "films[0].connective_tissue.stiffness_kpa_per_mm", "only films on tissue"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& plan) { return plan.param.name; });
 
 }  // namespace
 }  // namespace lipofill::simulation

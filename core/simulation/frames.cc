@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <map>
 #include <utility>
 
 #include "core/film/edge_operators.h"
@@ -11,104 +9,82 @@ namespace {
 
 constexpr double kMillimetresPerMetre = 1e3;
 
-std::vector<float> to_floats(const Eigen::Matrix3Xd& vectors, double scale) {
-  std::vector<float> values(static_cast<size_t>(vectors.size()));
-  std::transform(vectors.data(), vectors.data() + vectors.size(), values.begin(),
+template <typename Array>
+std::vector<float> to_floats(const Array& numbers, double scale) {
+  std::vector<float> values(static_cast<size_t>(numbers.size()));
+  std::transform(numbers.data(), numbers.data() + numbers.size(), values.begin(),
                  [scale](double v) { return static_cast<float>(v * scale); });
   return values;
-}
-
-std::vector<float> to_floats(const std::vector<double>& numbers, double scale) {
-  std::vector<float> values;
-  for (const double v : numbers) values.push_back(static_cast<float>(v * scale));
-  return values;
-}
-
-std::vector<float> to_floats(const Eigen::VectorXd& numbers, double scale) {
-  return to_floats(std::vector<double>(numbers.data(), numbers.data() + numbers.size()), scale);
 }
 
 bool wanted(const std::vector<std::string>& meshes, const std::string& name) {
   return meshes.empty() || std::find(meshes.begin(), meshes.end(), name) != meshes.end();
 }
 
-/// Vertices of a film's grid that cells touch, numbered in order.
-std::vector<int> used_vertices(const film::FilmGrid& grid, std::vector<uint32_t>* cells) {
-  std::map<int, uint32_t> number;
-  const auto corners = [&](int cell) {
-    const int i = grid.slot_i(grid.slot_of_cell[cell]);
-    const int j = grid.slot_j(grid.slot_of_cell[cell]);
-    return std::array<int, 4>{grid.vertex(i, j), grid.vertex(i + 1, j), grid.vertex(i + 1, j + 1),
-                              grid.vertex(i, j + 1)};
-  };
-  for (int cell = 0; cell < grid.n_cells(); ++cell) {
-    for (const int v : corners(cell)) number.emplace(v, 0);
+/// Displacement of `n` vertices [mm], 0 where no point moves them.
+/// @param skin  displacement of its nodes [m] (3, n_nodes)
+std::vector<float> move(const std::vector<SkinPoint>& points, int n, const Eigen::Matrix3Xd& skin) {
+  std::vector<float> values(3 * static_cast<size_t>(n));
+  for (const SkinPoint& point : points) {
+    float* to = values.data() + 3 * static_cast<ptrdiff_t>(point.vertex);
+    for (int c = 0; c < 3; ++c) {
+      double sum = 0.0;
+      for (int k = 0; k < 4; ++k) sum += point.weights[k] * skin(c, point.nodes[k]);
+      to[c] = static_cast<float>(kMillimetresPerMetre * sum);
+    }
   }
-  std::vector<int> vertices;
-  for (auto& [vertex, index] : number) {
-    index = static_cast<uint32_t>(vertices.size());
-    vertices.push_back(vertex);
-  }
-  if (cells == nullptr) return vertices;
-  for (int cell = 0; cell < grid.n_cells(); ++cell) {
-    for (const int v : corners(cell)) cells->push_back(number.at(v));
-  }
-  return vertices;
+  return values;
 }
 
-Eigen::Matrix3Xd select_columns(const Eigen::Matrix3Xd& all, const std::vector<int>& columns) {
-  Eigen::Matrix3Xd selected(3, columns.size());
-  for (size_t k = 0; k < columns.size(); ++k) selected.col(k) = all.col(columns[k]);
-  return selected;
-}
-
-std::vector<geometry::ChartPoint> skin_node_places(const geometry::LayeredGrid& grid) {
-  std::vector<geometry::ChartPoint> places;
-  for (int j = 0; j <= grid.n_eta; ++j) {
-    for (int i = 0; i <= grid.n_xi; ++i)
-      places.push_back({static_cast<double>(i) / grid.n_xi, static_cast<double>(j) / grid.n_eta});
+/// Values of the cells below `n` vertices, 0 where there is none.
+std::vector<float> look_below(const std::vector<SkinPoint>& points, int n, double scale,
+                              const std::vector<const Eigen::VectorXd*>& of_films) {
+  std::vector<float> values(static_cast<size_t>(n));
+  for (const SkinPoint& point : points) {
+    if (point.film >= 0) values[point.vertex] = static_cast<float>(scale * (*of_films[point.film])[point.cell]);
   }
-  return places;
+  return values;
 }
 
-/// Displacement of the skin at a place of the chart, bilinear between nodes.
-Eigen::Vector3d displacement_at(const geometry::LayeredGrid& grid, const Eigen::Matrix3Xd& skin,
-                                const geometry::ChartPoint& p) {
-  const double x = std::clamp(p.xi, 0.0, 1.0) * grid.n_xi;
-  const double y = std::clamp(p.eta, 0.0, 1.0) * grid.n_eta;
-  const int i = std::min(static_cast<int>(x), grid.n_xi - 1);
-  const int j = std::min(static_cast<int>(y), grid.n_eta - 1);
-  const double s = x - i;
-  const double t = y - j;
-  return (1 - s) * (1 - t) * skin.col(grid.surface_index(i, j)) + s * (1 - t) * skin.col(grid.surface_index(i + 1, j)) +
-         (1 - s) * t * skin.col(grid.surface_index(i, j + 1)) + s * t * skin.col(grid.surface_index(i + 1, j + 1));
+std::vector<float> select_columns(const Eigen::Matrix3Xd& all, const std::vector<int>& columns) {
+  std::vector<float> values;
+  values.reserve(3 * columns.size());
+  for (const int column : columns) {
+    for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(kMillimetresPerMetre * all(c, column)));
+  }
+  return values;
+}
+
+std::vector<float> select_moved(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                                const std::vector<int>& columns) {
+  std::vector<float> values;
+  values.reserve(3 * columns.size());
+  for (const int k : columns) {
+    for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(kMillimetresPerMetre * (to(c, k) - from(c, k))));
+  }
+  return values;
 }
 
 }  // namespace
 
-/// Pressure or thickness of the outermost film under each place, 0 where there is none.
-std::vector<double> Simulation::Impl::film_value_on_skin(const std::vector<geometry::ChartPoint>& places,
-                                                         bool pressure) const {
-  std::vector<int> outermost_first(films.size());
-  for (size_t f = 0; f < films.size(); ++f) outermost_first[f] = static_cast<int>(f);
-  std::stable_sort(outermost_first.begin(), outermost_first.end(),
-                   [&](int a, int b) { return films[a].level < films[b].level; });
-  std::vector<Eigen::VectorXd> values;
+/// The films as a frame shows them.
+struct Simulation::Impl::FilmsNow {
+  std::vector<film::FilmMetric> metric;
+  std::vector<Eigen::VectorXd> thickness;                      ///< [m] (n_cells)
+  std::vector<const Eigen::VectorXd*> pressures, thicknesses;  ///< of each film
+};
+
+Simulation::Impl::FilmsNow Simulation::Impl::measure_films() const {
+  FilmsNow now;
   for (size_t f = 0; f < films.size(); ++f) {
-    values.push_back(pressure ? state.films[f].pressure
-                              : Eigen::VectorXd(state.films[f].volume.cwiseQuotient(
-                                    stepper->film_metric(state, static_cast<int>(f)).area)));
+    now.metric.push_back(stepper->film_metric(state, static_cast<int>(f)));
+    now.thickness.emplace_back(state.films[f].volume.cwiseQuotient(now.metric[f].area));
   }
-  std::vector<double> result(places.size(), 0.0);
-  for (size_t k = 0; k < places.size(); ++k) {
-    for (const int f : outermost_first) {
-      const int cell = films[f].cell_at(places[k]);
-      if (cell < 0) continue;
-      result[k] = values[f][cell];
-      break;
-    }
+  for (size_t f = 0; f < films.size(); ++f) {
+    now.pressures.push_back(&state.films[f].pressure);
+    now.thicknesses.push_back(&now.thickness[f]);
   }
-  return result;
+  return now;
 }
 
 std::vector<MeshTopology> Simulation::topology() const {
@@ -136,13 +112,10 @@ std::vector<MeshTopology> Simulation::topology() const {
     }
     meshes.push_back(std::move(scan));
   }
-  const SimulationState rest = impl.stepper->rest_state();
   for (size_t f = 0; f < impl.films.size(); ++f) {
-    MeshTopology film{"film/" + impl.films[f].name, {}, {}, 4};
-    const std::vector<int> vertices = used_vertices(impl.films[f].grid, &film.cells);
-    film.points_mm = to_floats(select_columns(impl.stepper->film_metric(rest, static_cast<int>(f)).vertices, vertices),
-                               kMillimetresPerMetre);
-    meshes.push_back(std::move(film));
+    meshes.push_back({"film/" + impl.films[f].name,
+                      select_columns(impl.rest_film_vertices[f], impl.frame_layout.film_vertices[f]),
+                      impl.frame_layout.film_corners[f], 4});
   }
   if (impl.stepper->tissue() != nullptr) {
     const solid::HexMesh& mesh = impl.stepper->tissue()->tissue.mesh();
@@ -155,71 +128,64 @@ std::vector<MeshTopology> Simulation::topology() const {
   return meshes;
 }
 
-/// @param moved   displacement of the nodes of the skin [m] (3, n)
-/// @param places  theirs in the chart
-void Simulation::Impl::add_skin_fields(const Eigen::Matrix3Xd& moved, const std::vector<geometry::ChartPoint>& places,
+/// @param skin  displacement of the nodes of this simulation's skin [m]
+void Simulation::Impl::add_skin_fields(const FrameLayout& layout, const Eigen::Matrix3Xd& skin, const FilmsNow& now,
                                        std::vector<FrameField>& fields) const {
-  fields.push_back({"skin", "displacement", "mm", FieldLocation::kPoint, 3, to_floats(moved, kMillimetresPerMetre)});
+  const int n = static_cast<int>(layout.skin.size());
+  fields.push_back({"skin", "displacement", "mm", FieldLocation::kPoint, 3, move(layout.skin, n, skin)});
   fields.push_back(
-      {"skin", "pressure", "Pa", FieldLocation::kPoint, 1, to_floats(film_value_on_skin(places, true), 1.0)});
+      {"skin", "pressure", "Pa", FieldLocation::kPoint, 1, look_below(layout.skin, n, 1.0, now.pressures)});
   fields.push_back({"skin", "thickness", "mm", FieldLocation::kPoint, 1,
-                    to_floats(film_value_on_skin(places, false), kMillimetresPerMetre)});
+                    look_below(layout.skin, n, kMillimetresPerMetre, now.thicknesses)});
 }
 
-/// @param skin  displacement of the nodes of this simulation's skin [m]
-void Simulation::Impl::add_scan_fields(const geometry::FaceGeometry& face, const Eigen::Matrix3Xd& skin,
-                                       std::vector<FrameField>& fields) const {
-  Eigen::Matrix3Xd moved = Eigen::Matrix3Xd::Zero(3, face.scan.n_vertices());
-  std::vector<geometry::ChartPoint> places;
-  for (const geometry::Rider& rider : face.riders) {
-    moved.col(rider.vertex) = displacement_at(model->geometry.grid, skin, rider.place);
-    places.push_back(rider.place);
-  }
-  const std::vector<double> rider_pressure = film_value_on_skin(places, true);
-  std::vector<double> pressure(face.scan.n_vertices(), 0.0);
-  for (size_t k = 0; k < face.riders.size(); ++k) pressure[face.riders[k].vertex] = rider_pressure[k];
-  fields.push_back({"scan", "displacement", "mm", FieldLocation::kPoint, 3, to_floats(moved, kMillimetresPerMetre)});
-  fields.push_back({"scan", "pressure", "Pa", FieldLocation::kPoint, 1, to_floats(pressure, 1.0)});
+/// @param n  vertices of the scan
+void Simulation::Impl::add_scan_fields(const FrameLayout& layout, int n, const Eigen::Matrix3Xd& skin,
+                                       const FilmsNow& now, std::vector<FrameField>& fields) const {
+  fields.push_back({"scan", "displacement", "mm", FieldLocation::kPoint, 3, move(layout.scan, n, skin)});
+  fields.push_back(
+      {"scan", "pressure", "Pa", FieldLocation::kPoint, 1, look_below(layout.scan, n, 1.0, now.pressures)});
+}
+
+void Simulation::Impl::add_film_fields(size_t f, const FilmsNow& now, std::vector<FrameField>& fields) const {
+  const std::string name = "film/" + films[f].name;
+  const FilmState& film = state.films[f];
+  const film::FilmMetric& metric = now.metric[f];
+  fields.push_back({name, "displacement", "mm", FieldLocation::kPoint, 3,
+                    select_moved(rest_film_vertices[f], metric.vertices, frame_layout.film_vertices[f])});
+  fields.push_back(
+      {name, "thickness", "mm", FieldLocation::kCell, 1, to_floats(now.thickness[f], kMillimetresPerMetre)});
+  fields.push_back({name, "pressure", "Pa", FieldLocation::kCell, 1, to_floats(film.pressure, 1.0)});
+  fields.push_back(
+      {name, "velocity", "mm/s", FieldLocation::kCell, 3,
+       to_floats(film::compute_cell_velocity(films[f].grid, metric, film.velocity), kMillimetresPerMetre)});
+  std::vector<float> wet(static_cast<size_t>(film.volume.size()));
+  for (size_t cell = 0; cell < wet.size(); ++cell) wet[cell] = film.volume[static_cast<int>(cell)] > 0.0 ? 1.0f : 0.0f;
+  fields.push_back({name, "wet", "", FieldLocation::kCell, 1, std::move(wet)});
 }
 
 std::vector<FrameField> Simulation::frame_on(const geometry::FaceGeometry& face) const {
-  const Eigen::Matrix3Xd skin = impl_->skin_displacement();
-  const std::vector<geometry::ChartPoint> places = skin_node_places(face.grid);
-  Eigen::Matrix3Xd moved(3, places.size());
-  for (size_t k = 0; k < places.size(); ++k) {
-    moved.col(k) = displacement_at(impl_->model->geometry.grid, skin, places[k]);
-  }
+  const Impl& impl = *impl_;
+  const FrameLayout layout = make_frame_layout(impl.model->geometry.grid, impl.films, face);
+  const Eigen::Matrix3Xd skin = impl.skin_displacement();
+  const Impl::FilmsNow now = impl.measure_films();
   std::vector<FrameField> fields;
-  impl_->add_skin_fields(moved, places, fields);
-  if (face.scan.n_vertices() > 0) impl_->add_scan_fields(face, skin, fields);
+  impl.add_skin_fields(layout, skin, now, fields);
+  const auto n_scan = static_cast<int>(face.scan.n_vertices());
+  if (n_scan > 0) impl.add_scan_fields(layout, n_scan, skin, now, fields);
   return fields;
 }
 
 std::vector<FrameField> Simulation::frame(const std::vector<std::string>& meshes) const {
   const Impl& impl = *impl_;
-  const geometry::FaceGeometry& face = impl.model->geometry;
-  std::vector<FrameField> fields;
   const Eigen::Matrix3Xd skin = impl.skin_displacement();
-  if (wanted(meshes, "skin")) impl.add_skin_fields(skin, skin_node_places(face.grid), fields);
-  if (face.scan.n_vertices() > 0 && wanted(meshes, "scan")) impl.add_scan_fields(face, skin, fields);
-  const SimulationState rest = impl.stepper->rest_state();
+  const Impl::FilmsNow now = impl.measure_films();
+  std::vector<FrameField> fields;
+  if (wanted(meshes, "skin")) impl.add_skin_fields(impl.frame_layout, skin, now, fields);
+  const auto n_scan = static_cast<int>(impl.model->geometry.scan.n_vertices());
+  if (n_scan > 0 && wanted(meshes, "scan")) impl.add_scan_fields(impl.frame_layout, n_scan, skin, now, fields);
   for (size_t f = 0; f < impl.films.size(); ++f) {
-    const std::string name = "film/" + impl.films[f].name;
-    if (!wanted(meshes, name)) continue;
-    const film::FilmGrid& grid = impl.films[f].grid;
-    const FilmState& film = impl.state.films[f];
-    const film::FilmMetric metric = impl.stepper->film_metric(impl.state, static_cast<int>(f));
-    const Eigen::Matrix3Xd moved = metric.vertices - impl.stepper->film_metric(rest, static_cast<int>(f)).vertices;
-    fields.push_back({name, "displacement", "mm", FieldLocation::kPoint, 3,
-                      to_floats(select_columns(moved, used_vertices(grid, nullptr)), kMillimetresPerMetre)});
-    fields.push_back({name, "thickness", "mm", FieldLocation::kCell, 1,
-                      to_floats(Eigen::VectorXd(film.volume.cwiseQuotient(metric.area)), kMillimetresPerMetre)});
-    fields.push_back({name, "pressure", "Pa", FieldLocation::kCell, 1, to_floats(film.pressure, 1.0)});
-    fields.push_back({name, "velocity", "mm/s", FieldLocation::kCell, 3,
-                      to_floats(film::compute_cell_velocity(grid, metric, film.velocity), kMillimetresPerMetre)});
-    std::vector<float> wet;
-    for (const double volume : film.volume) wet.push_back(volume > 0.0 ? 1.0f : 0.0f);
-    fields.push_back({name, "wet", "", FieldLocation::kCell, 1, std::move(wet)});
+    if (wanted(meshes, "film/" + impl.films[f].name)) impl.add_film_fields(f, now, fields);
   }
   if (impl.stepper->tissue() != nullptr && wanted(meshes, "tissue")) {
     fields.push_back(

@@ -58,6 +58,10 @@ absl::Status Simulation::Impl::set_up() {
   if (!created.ok()) return created.status();
   stepper = *std::move(created);
   state = stepper->rest_state();
+  frame_layout = make_frame_layout(model->geometry.grid, films, model->geometry);
+  for (size_t f = 0; f < films.size(); ++f) {
+    rest_film_vertices.push_back(stepper->film_metric(state, static_cast<int>(f)).vertices);
+  }
   if (const absl::Status status = stepper->open_to_initial_thickness(state); !status.ok()) return status;
   state.next_step = spec.step;
   for (const FilmState& film : state.films) initial_volume += film.volume.sum();

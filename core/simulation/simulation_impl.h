@@ -6,6 +6,7 @@
 
 #include "core/simulation/coupled_step.h"
 #include "core/simulation/film_layout.h"
+#include "core/simulation/frame_layout.h"
 #include "core/simulation/injection_schedule.h"
 #include "core/simulation/simulation.h"
 #include "core/simulation/simulation_state.h"
@@ -23,6 +24,8 @@ struct Simulation::Impl {
   std::shared_ptr<const FaceModel> model;
   SimulationSpec spec;
   std::vector<FilmLayout> films;
+  FrameLayout frame_layout;
+  std::vector<Eigen::Matrix3Xd> rest_film_vertices;  ///< of each film's mid-surface [m] (3, n_vertices)
   std::vector<ProbePlace> probes;
   InjectionSchedule schedule;
   std::unique_ptr<CoupledStep> stepper;
@@ -58,11 +61,13 @@ struct Simulation::Impl {
   Eigen::Matrix3Xd skin_positions() const;
   Eigen::Matrix3Xd skin_displacement() const;
 
-  void add_skin_fields(const Eigen::Matrix3Xd& moved, const std::vector<geometry::ChartPoint>& places,
+  struct FilmsNow;
+  FilmsNow measure_films() const;
+  void add_skin_fields(const FrameLayout& layout, const Eigen::Matrix3Xd& skin, const FilmsNow& now,
                        std::vector<FrameField>& fields) const;
-  void add_scan_fields(const geometry::FaceGeometry& face, const Eigen::Matrix3Xd& skin,
+  void add_scan_fields(const FrameLayout& layout, int n, const Eigen::Matrix3Xd& skin, const FilmsNow& now,
                        std::vector<FrameField>& fields) const;
-  std::vector<double> film_value_on_skin(const std::vector<geometry::ChartPoint>& places, bool pressure) const;
+  void add_film_fields(size_t f, const FilmsNow& now, std::vector<FrameField>& fields) const;
 };
 
 }  // namespace lipofill::simulation

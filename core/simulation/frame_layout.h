@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "core/geometry/face_geometry.h"
+#include "core/simulation/film_layout.h"
+
+namespace lipofill::simulation {
+
+/// A vertex that moves with the skin, between four of its nodes, and the cell of the outermost film below it.
+struct SkinPoint {
+  int vertex = 0;  ///< of the mesh that it belongs to
+  std::array<int, 4> nodes{};
+  std::array<double, 4> weights{};
+  int film = -1;  ///< -1: none below
+  int cell = -1;
+};
+
+/// Where the values of a frame's meshes come from. Constant: a frame only gathers.
+struct FrameLayout {
+  std::vector<SkinPoint> skin;
+  std::vector<SkinPoint> scan;                      ///< those of its vertices that move
+  std::vector<std::vector<int>> film_vertices;      ///< of each film's grid, those that cells touch, in order
+  std::vector<std::vector<uint32_t>> film_corners;  ///< of each film's cells, four each, among film_vertices
+};
+
+/// @param skin  of the simulation whose films these are
+/// @param face  whose skin and scan the frame shows: that model's own or another one's of the same chart
+FrameLayout make_frame_layout(const geometry::LayeredGrid& skin, const std::vector<FilmLayout>& films,
+                              const geometry::FaceGeometry& face);
+
+}  // namespace lipofill::simulation

@@ -7,6 +7,7 @@
 #include "server/ops/options.h"
 #include "server/ops/signals.h"
 #include "server/rpc/grpc_server.h"
+#include "server/rpc/simulation_recovery.h"
 #include "server/store/data_directory.h"
 #include "server/store/sqlite_store.h"
 #include "spdlog/spdlog.h"
@@ -14,16 +15,14 @@
 namespace lipofill::server {
 namespace {
 
-/// Brings the store in line after a run that did not end well.
-absl::Status recover(Store& store, const ScanFiles& files) {
-  const auto failed = store.fail_unended_simulations("the daemon stopped");
-  if (!failed.ok()) return failed.status();
-  if (*failed > 0) spdlog::warn("{} simulations were under way when the daemon stopped: they are FAILED", *failed);
-  const int swept = files.sweep([&store](const std::string& patient, const std::string& scan) {
+/// Removes files that no record speaks of: what a run that did not end well left.
+void sweep_files(Store& store, const ScanFiles& scans, const CheckpointFiles& checkpoints) {
+  const int swept = scans.sweep([&store](const std::string& patient, const std::string& scan) {
     return !absl::IsNotFound(store.get_scan(patient, scan).status());
+  }) + checkpoints.sweep([&store](const std::string& simulation, const std::string& checkpoint) {
+    return !absl::IsNotFound(store.get_checkpoint(simulation, checkpoint).status());
   });
-  if (swept > 0) spdlog::warn("{} files of scans that are in no record were removed", swept);
-  return absl::OkStatus();
+  if (swept > 0) spdlog::warn("{} files that are in no record were removed", swept);
 }
 
 /// Written beside and moved into place, so that a script never reads half a number.
@@ -35,6 +34,15 @@ absl::Status write_port(const std::string& path, int port) {
   return error ? absl::FailedPreconditionError("cannot write " + path + ": " + error.message()) : absl::OkStatus();
 }
 
+BackendOptions backend_options(const Options& options) {
+  BackendOptions backend{
+      options.workers, options.max_simulations, options.keepalive_s, options.keepalive_timeout_s, {}};
+  backend.checkpoints.interval_s = options.checkpoint_interval_s;
+  backend.checkpoints.kept = options.checkpoints_kept;
+  backend.checkpoints.most_bytes = options.checkpoint_space_mb * 1'000'000;
+  return backend;
+}
+
 absl::Status serve(const Options& options) {
   const auto data = DataDirectory::open(options.data);
   if (!data.ok()) return data.status();
@@ -42,11 +50,12 @@ absl::Status serve(const Options& options) {
   if (!store.ok()) return store.status();
   auto files = ScanFiles::open(data->scans());
   if (!files.ok()) return files.status();
-  if (auto recovered = recover(**store, *files); !recovered.ok()) return recovered;
+  auto checkpoints = CheckpointFiles::open(data->checkpoints());
+  if (!checkpoints.ok()) return checkpoints.status();
+  sweep_files(**store, *files, *checkpoints);
 
-  const BackendOptions shared{options.workers, options.max_simulations, options.keepalive_s,
-                              options.keepalive_timeout_s};
-  Backend backend(shared, **store, *files);
+  Backend backend(backend_options(options), **store, *files, *checkpoints);
+  if (auto back = bring_back_simulations(backend); !back.ok()) return back;
   const auto server = GrpcServer::start(options.listen, backend);
   if (!server.ok()) return server.status();
   if (!options.port_file.empty()) {

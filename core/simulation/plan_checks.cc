@@ -96,4 +96,10 @@ absl::Status check_plan(const SimulationSpec& spec) {
   return violations.to_status();
 }
 
+absl::Status check_room_for_injection(const SimulationSpec& spec) {
+  if (spec.injections.size() < kMaxInjections) return absl::OkStatus();
+  return absl::ResourceExhaustedError(
+      absl::StrCat("the plan has ", spec.injections.size(), " injections, the bound is ", kMaxInjections));
+}
+
 }  // namespace lipofill::simulation

@@ -9,4 +9,7 @@ namespace lipofill::simulation {
 /// films, names. Field violations are named as in lipofill.v1.SimulationSpec, values in the units of those names.
 absl::Status check_plan(const SimulationSpec& spec);
 
+/// RESOURCE_EXHAUSTED naming the bound when the plan cannot take one more injection.
+absl::Status check_room_for_injection(const SimulationSpec& spec);
+
 }  // namespace lipofill::simulation

@@ -240,15 +240,25 @@ const std::shared_ptr<const FaceModel>& Simulation::shared_model() const {
   return impl_->model;
 }
 
-absl::Status Simulation::inject(const InjectionSpec& injection) {
+absl::StatusOr<InjectionSpec> Simulation::resolve(const InjectionSpec& injection) const {
   if (impl_->phase != Phase::kRunning) {
     return absl::FailedPreconditionError("the simulation has ended and takes no more injections");
   }
+  if (const absl::Status room = check_room_for_injection(impl_->spec); !room.ok()) return room;
   InjectionSpec timed = injection;
   if (!timed.start.has_value()) timed.start = std::max(impl_->state.time, impl_->schedule.end());
-  const absl::Status status = impl_->schedule.add(*impl_->model, impl_->films, timed, impl_->state.time);
+  InjectionSchedule trial = impl_->schedule;
+  const absl::Status status = trial.add(*impl_->model, impl_->films, timed, impl_->state.time);
   if (!status.ok()) return status;
-  impl_->spec.injections.push_back(timed);
+  return timed;
+}
+
+absl::Status Simulation::inject(const InjectionSpec& injection) {
+  const auto timed = resolve(injection);
+  if (!timed.ok()) return timed.status();
+  const absl::Status status = impl_->schedule.add(*impl_->model, impl_->films, *timed, impl_->state.time);
+  if (!status.ok()) return status;
+  impl_->spec.injections.push_back(*timed);
   impl_->state.next_step = std::min(impl_->state.next_step, impl_->spec.step);
   impl_->state.slow_steps = 0;
   return absl::OkStatus();

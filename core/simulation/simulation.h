@@ -117,6 +117,9 @@ class Simulation {
   /// Adds an injection to the plan; without a start it begins now, or after the last one still due. Field violations
   /// named as in lipofill.v1.Injection. A settled or finished simulation does not take one: FAILED_PRECONDITION.
   absl::Status inject(const InjectionSpec& injection);
+  /// The injection that inject() would add, with its start, or why it would refuse it. Whoever must note an injection
+  /// before it takes effect notes this one: inject() of it, at the same step of an equal simulation, does the same.
+  absl::StatusOr<InjectionSpec> resolve(const InjectionSpec& injection) const;
   const SimulationSpec& spec() const;
   const FaceModel& model() const;
   const std::shared_ptr<const FaceModel>& shared_model() const;

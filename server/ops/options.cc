@@ -19,7 +19,9 @@ constexpr char kFooter[] =
     "  lipofilld --listen 0.0.0.0:50061                  serve the network; there is no encryption yet: trusted "
     "networks only\n"
     "\n"
-    "SIGTERM and SIGINT stop it gracefully: simulations end STOPPED and keep the state they reached.";
+    "SIGTERM and SIGINT stop it gracefully. However it ends, the next start on the same data brings every simulation "
+    "back "
+    "and goes on with those that ran.";
 
 }  // namespace
 
@@ -49,6 +51,20 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   app.add_option("--keepalive-timeout-s", options.keepalive_timeout_s, "and dropped when it does not answer in so long")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+  app.add_option(
+         "--checkpoint-interval-s", options.checkpoint_interval_s,
+         "Seconds that a running simulation goes on before its state is kept again; 0: not until it is asked for")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->capture_default_str();
+  app.add_option("--checkpoints-kept", options.checkpoints_kept, "States kept of each running simulation, the newest")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  app.add_option("--checkpoint-space-mb", options.checkpoint_space_mb, "What all kept states may take together")
+      ->type_name("MB")
+      ->check(CLI::Range(uint64_t{1}, uint64_t{100'000'000}))
       ->capture_default_str();
   app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error or off")
       ->type_name("LEVEL")

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -13,6 +14,9 @@ struct Options {
   int max_simulations = 64;
   double keepalive_s = 30.0;
   double keepalive_timeout_s = 20.0;
+  double checkpoint_interval_s = 10.0;
+  int checkpoints_kept = 3;
+  uint64_t checkpoint_space_mb = 8192;
   std::string log_level = "info";
   std::string port_file;
 };

@@ -12,6 +12,7 @@
 #include "server/sessions/session_manager.h"
 #include "server/sessions/task_pool.h"
 #include "server/sessions/worker_pool.h"
+#include "server/store/checkpoint_files.h"
 #include "server/store/scan_files.h"
 #include "server/store/store.h"
 
@@ -24,21 +25,24 @@ struct BackendOptions {
   /// time.
   double keepalive_s = 30.0;
   double keepalive_timeout_s = 20.0;
+  CheckpointOptions checkpoints;
 };
 
 /// What the services share.
 struct Backend {
-  Backend(const BackendOptions& the_options, Store& the_store, ScanFiles& files)
+  Backend(const BackendOptions& the_options, Store& the_store, ScanFiles& scans, CheckpointFiles& checkpoints)
       : options(the_options),
         store(the_store),
-        scan_files(files),
+        scan_files(scans),
+        checkpoint_files(checkpoints),
         sessions(options.max_simulations),
-        keeper(the_store, sessions),
+        keeper(the_store, checkpoints, sessions, options.checkpoints),
         workers(options.workers) {}
 
   const BackendOptions options;
   Store& store;
   ScanFiles& scan_files;
+  CheckpointFiles& checkpoint_files;
   std::atomic<bool> stopping = false;
   ModelCache models{8};
   Operations operations;

@@ -56,7 +56,7 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::string&
 void GrpcServer::stop() {
   backend_.stopping = true;
   server_->GetHealthCheckService()->SetServingStatus(false);
-  backend_.sessions.stop_all("daemon stopped");
+  backend_.sessions.suspend_all("the daemon stopped");
   backend_.operations.stop();
   server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
   backend_.builds.stop();

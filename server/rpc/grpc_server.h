@@ -23,8 +23,8 @@ class GrpcServer {
 
   int port() const { return port_; }
 
-  /// In order: no new work, viewers' streams end with UNAVAILABLE, simulations end STOPPED with their last state kept,
-  /// builds are cancelled, calls under way are answered or cut off.
+  /// In order: no new work, viewers' streams end with UNAVAILABLE, simulations stand still with their state kept, for
+  /// the next start to go on from, builds are cancelled, calls under way are answered or cut off.
   void stop();
 
  private:

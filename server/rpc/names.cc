@@ -73,6 +73,11 @@ absl::StatusOr<PatientChild> parse_model_name(const std::string& name, const std
 absl::StatusOr<std::string> parse_simulation_name(const std::string& name, const std::string& field) {
   return parse_single("simulations", name, field);
 }
+absl::StatusOr<CheckpointParts> parse_checkpoint_name(const std::string& name, const std::string& field) {
+  const auto ids = parse_name({"simulations", "checkpoints"}, name, field);
+  if (!ids.ok()) return ids.status();
+  return CheckpointParts{(*ids)[0], (*ids)[1]};
+}
 absl::StatusOr<std::string> parse_operation_name(const std::string& name, const std::string& field) {
   return parse_single("operations", name, field);
 }

@@ -13,12 +13,18 @@ struct PatientChild {
   std::string id;
 };
 
+struct CheckpointParts {
+  std::string simulation;
+  std::string id;
+};
+
 /// Resource names, taken apart. INVALID_ARGUMENT for `field` saying what the name should look like.
 /// Checked by tests/unit/server/names_test.cc.
 absl::StatusOr<std::string> parse_patient_name(const std::string& name, const std::string& field);
 absl::StatusOr<PatientChild> parse_scan_name(const std::string& name, const std::string& field);
 absl::StatusOr<PatientChild> parse_model_name(const std::string& name, const std::string& field);
 absl::StatusOr<std::string> parse_simulation_name(const std::string& name, const std::string& field);
+absl::StatusOr<CheckpointParts> parse_checkpoint_name(const std::string& name, const std::string& field);
 absl::StatusOr<std::string> parse_operation_name(const std::string& name, const std::string& field);
 
 /// The id given, or a new one when it is empty. INVALID_ARGUMENT unless it matches [a-z][a-z0-9-]{0,62}.

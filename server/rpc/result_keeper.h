@@ -3,24 +3,54 @@
 #include <string>
 #include <vector>
 
-#include "server/sessions/session.h"
 #include "server/sessions/session_manager.h"
+#include "server/sessions/session_sink.h"
+#include "server/store/checkpoint_files.h"
 #include "server/store/store.h"
 
 namespace lipofill::server {
 
-/// Puts what sessions compute into the store, as messages of the wire schema, and lets go of sessions that have ended.
+/// Bounds of what is kept to go on from.
+struct CheckpointOptions {
+  double interval_s = 10.0;                 ///< wall time between automatic ones; 0: none
+  int kept = 3;                             ///< automatic ones a simulation
+  int most_asked = 32;                      ///< ones made by clients, a simulation
+  uint64_t most_bytes = uint64_t{8} << 30;  ///< of all together
+};
+
+/// Puts what sessions do and compute into the store, as messages of the wire schema, and lets go of sessions that have
+/// ended.
 class ResultKeeper : public SessionSink {
  public:
-  ResultKeeper(Store& store, SessionManager& sessions) : store_(store), sessions_(sessions) {}
+  ResultKeeper(Store& store, CheckpointFiles& files, SessionManager& sessions, const CheckpointOptions& options)
+      : store_(store), files_(files), sessions_(sessions), options_(options) {}
 
+  absl::StatusOr<bool> was_kept(const RequestKey& request) override;
+  absl::StatusOr<bool> keep_command(const CommandRecord& command, const RequestKey& request) override;
+  absl::StatusOr<bool> keep_injection(const CommandRecord& command, double start_s, const RequestKey& request) override;
+  absl::StatusOr<bool> keep_restore(const CommandRecord& command, SimulationState state,
+                                    const std::string& spec_message, const RequestKey& request) override;
+  absl::StatusOr<uint64_t> begin_epoch(const std::string& id) override;
+  /// RESOURCE_EXHAUSTED naming the bound where there are too many, or too many bytes.
+  absl::StatusOr<CheckpointRecord> keep_checkpoint(const CheckpointRecord& draft, const std::string& snapshot,
+                                                   const std::vector<SeriesEntry>& rows,
+                                                   const RequestKey& request) override;
   absl::Status append_series(const std::string& id, const std::vector<SeriesEntry>& rows) override;
   absl::Status ended(const std::string& id, const SessionView& view, const Topology& topology,
                      const Frame& frame) override;
 
+  /// Removes files of a simulation's checkpoints that are in no record any more.
+  void tidy(const std::string& simulation) const;
+  /// OK when files of so many bytes more are within the bound.
+  absl::Status check_room(uint64_t bytes) const;
+
  private:
+  absl::Status check_number_asked(const std::string& simulation) const;
+
   Store& store_;
+  CheckpointFiles& files_;
   SessionManager& sessions_;
+  const CheckpointOptions options_;
 };
 
 }  // namespace lipofill::server

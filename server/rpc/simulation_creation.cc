@@ -36,34 +36,9 @@ absl::StatusOr<SimulationRecord> read_request(const v1::CreateSimulationRequest&
   return record;
 }
 
-absl::StatusOr<std::shared_ptr<Session>> make_session(Backend& backend, const SimulationRecord& record,
-                                                      const v1::SimulationSpec& message) {
-  const auto model = backend.load_model(record.model);
-  if (!model.ok()) return model.status();
-  auto spec = to_simulation_spec(message);
-  if (!spec.ok()) return spec.status();
-  auto simulation = simulation::Simulation::create(*model, *std::move(spec));
-  if (!simulation.ok()) return with_prefix("spec", simulation.status());
-  SessionOptions options;
-  options.id = record.id;
-  options.epoch = static_cast<uint64_t>(record.create_time_us);
-  options.real_time = message.pace() == v1::REAL_TIME;
-  options.preview = message.preview();
-  return std::make_shared<Session>(options, *std::move(simulation), backend.workers, backend.keeper);
-}
-
-absl::StatusOr<v1::Simulation> show(Backend& backend, const std::string& id) {
-  const auto record = backend.store.get_simulation(id);
-  if (!record.ok()) return record.status();
-  const auto session = backend.sessions.find(id);
-  if (session == nullptr) return to_simulation(*record, nullptr);
-  const SessionView view = session->cached_view();
-  return to_simulation(*record, &view);
-}
-
-absl::StatusOr<SessionView> start(Session& session) {
+absl::StatusOr<SessionView> start_and_wait(Session& session) {
   auto answer = std::make_shared<std::promise<absl::StatusOr<SessionView>>>();
-  session.start([answer](absl::StatusOr<SessionView> view) { answer->set_value(std::move(view)); });
+  session.start({}, [answer](absl::StatusOr<SessionView> view) { answer->set_value(std::move(view)); });
   return answer->get_future().get();
 }
 
@@ -73,6 +48,7 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
   v1::Simulation simulation;
   simulation.set_name(simulation_name(record.id));
   simulation.set_display_name(record.display_name);
+  simulation.set_origin(record.origin);
   simulation.mutable_spec()->ParseFromString(record.spec_message);
   *simulation.mutable_create_time() = to_timestamp(record.create_time_us);
   simulation.set_state(to_state(view != nullptr ? view->state : record.state));
@@ -85,6 +61,78 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
   return simulation;
 }
 
+absl::StatusOr<v1::Simulation> show_simulation(Backend& backend, const std::string& id) {
+  const auto record = backend.store.get_simulation(id);
+  if (!record.ok()) return record.status();
+  const auto session = backend.sessions.find(id);
+  if (session == nullptr) return to_simulation(*record, nullptr);
+  const SessionView view = session->cached_view();
+  return to_simulation(*record, &view);
+}
+
+absl::StatusOr<std::unique_ptr<simulation::Simulation>> make_simulation(Backend& backend, const std::string& model,
+                                                                        const v1::SimulationSpec& spec) {
+  const auto built = backend.load_model(model);
+  if (!built.ok()) return built.status();
+  auto plan = to_simulation_spec(spec);
+  if (!plan.ok()) return plan.status();
+  auto made = simulation::Simulation::create(*built, *std::move(plan));
+  if (!made.ok()) return with_prefix("spec", made.status());
+  return made;
+}
+
+SessionOptions make_session_options(const Backend& backend, const std::string& id, uint64_t epoch,
+                                    const v1::SimulationSpec& spec) {
+  SessionOptions options;
+  options.id = id;
+  options.epoch = epoch;
+  options.real_time = spec.pace() == v1::REAL_TIME;
+  options.preview = spec.preview();
+  options.checkpoint_interval_s = backend.options.checkpoints.interval_s;
+  return options;
+}
+
+absl::StatusOr<v1::Simulation> open_session(Backend& backend, SessionManager::Place place,
+                                            const SimulationRecord& record, std::shared_ptr<Session> session,
+                                            bool start) {
+  const auto ids = parse_model_name(record.model, "spec.model");
+  // From here on the model is held by the record, but it may have gone before that.
+  absl::Status open = ids.ok() ? backend.store.get_model(ids->patient, ids->id).status() : ids.status();
+  if (open.ok() && !backend.sessions.add(std::move(place), session)) {
+    open = absl::UnavailableError("the daemon is stopping");
+  }
+  if (!open.ok()) {
+    delete_simulation_record(backend, record.id).IgnoreError();
+    return open;
+  }
+  SessionView view = session->cached_view();
+  spdlog::info("{} created on {}, {} degrees of freedom, {} film cells", simulation_name(record.id), record.model,
+               view.n_dofs, view.n_film_cells);
+  if (!start) return to_simulation(record, &view);
+  auto started = start_and_wait(*session);
+  if (!started.ok()) return started.status();
+  return to_simulation(record, &*started);
+}
+
+absl::StatusOr<v1::Simulation> show_made_before(Backend& backend, const std::string& name, bool start) {
+  const std::string id = name.substr(simulation_name("").size());
+  const auto session = backend.sessions.find(id);
+  if (start && session != nullptr && session->cached_view().state == SimulationState::kReady) {
+    // The daemon ended between making it and starting it; another repetition may be first.
+    start_and_wait(*session).status().IgnoreError();
+  }
+  return show_simulation(backend, id);
+}
+
+absl::Status delete_simulation_record(Backend& backend, const std::string& id) {
+  const absl::Status done = backend.store.delete_simulation(id);
+  if (!done.ok()) return done;
+  backend.sessions.remove(id);
+  backend.checkpoint_files.remove_simulation(id);
+  spdlog::info("{} deleted", simulation_name(id));
+  return done;
+}
+
 absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const v1::CreateSimulationRequest& request,
                                                  const std::function<bool()>& caller_has_left) {
   const auto record = read_request(request);
@@ -92,27 +140,20 @@ absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const v1::Cre
   const RequestKey key = make_request_key("CreateSimulation", request.request_id(), request);
   const auto earlier = backend.store.find_request(key);
   if (!earlier.ok()) return earlier.status();
-  if (earlier->has_value()) return show(backend, (**earlier).substr(simulation_name("").size()));
+  if (earlier->has_value()) return show_made_before(backend, **earlier, request.start());
 
   auto place = backend.sessions.reserve();
   if (!place.ok()) return place.status();
-  const auto session = make_session(backend, *record, request.spec());
-  if (!session.ok()) return session.status();
+  auto simulation = make_simulation(backend, record->model, request.spec());
+  if (!simulation.ok()) return simulation.status();
   if (caller_has_left()) return absl::CancelledError("the caller left before the simulation was created");
   const auto kept = backend.store.create_simulation(*record, key);
   if (!kept.ok()) return kept.status();
-  if (kept->id != record->id) return show(backend, kept->id);
-  if (!backend.sessions.add(*std::move(place), *session)) {
-    backend.store.delete_simulation(record->id).IgnoreError();
-    return absl::UnavailableError("the daemon is stopping");
-  }
-  SessionView view = (*session)->cached_view();
-  spdlog::info("{} created on {}, {} degrees of freedom, {} film cells", simulation_name(record->id), record->model,
-               view.n_dofs, view.n_film_cells);
-  if (!request.start()) return to_simulation(*record, &view);
-  auto started = start(**session);
-  if (!started.ok()) return started.status();
-  return to_simulation(*record, &*started);
+  if (kept->id != record->id) return show_made_before(backend, simulation_name(kept->id), request.start());
+  const auto epoch = static_cast<uint64_t>(record->create_time_us);
+  auto session = std::make_shared<Session>(make_session_options(backend, record->id, epoch, request.spec()),
+                                           *std::move(simulation), backend.workers, backend.keeper);
+  return open_session(backend, *std::move(place), *record, std::move(session), request.start());
 }
 
 }  // namespace lipofill::server

@@ -1,16 +1,16 @@
 #include "server/rpc/simulation_service.h"
 
 #include "absl/strings/str_cat.h"
+#include "server/rpc/checkpoint_calls.h"
 #include "server/rpc/listing.h"
 #include "server/rpc/names.h"
+#include "server/rpc/request_key.h"
 #include "server/rpc/result_reading.h"
 #include "server/rpc/simulation_conversion.h"
 #include "server/rpc/simulation_creation.h"
 #include "server/rpc/tissue_deck.h"
 #include "server/rpc/unary.h"
 #include "server/rpc/violation_prefix.h"
-#include "server/store/sqlite_store.h"
-#include "spdlog/spdlog.h"
 
 namespace lipofill::server {
 namespace {
@@ -30,26 +30,17 @@ Session::Reply reply_to(Backend& backend, const std::string& id, Reactor* reacto
   };
 }
 
-absl::Status cannot(const char* what, const SimulationRecord& record) {
-  return absl::FailedPreconditionError(
-      absl::StrCat("cannot ", what, ": ", simulation_name(record.id), " is ", state_name(record.state)));
-}
-
-/// The plan that is kept follows what was injected. The session's lock keeps others from doing the same meanwhile.
-absl::Status note_injection(Backend& backend, const std::string& id, const v1::Injection& injection) {
+/// What becomes of a command when there is no session: the simulation has ended, perhaps by an equal request, or could
+/// not be brought back.
+absl::Status answer_without_session(Backend& backend, const std::string& id, const char* what, const RequestKey& key,
+                                    v1::Simulation& response) {
   const auto record = backend.store.get_simulation(id);
   if (!record.ok()) return record.status();
-  v1::SimulationSpec spec;
-  if (!spec.ParseFromString(record->spec_message)) return absl::DataLossError("the plan cannot be read");
-  *spec.add_injections() = injection;
-  return backend.store.update_simulation_spec(id, spec.SerializeAsString());
-}
-
-absl::Status delete_record(Backend& backend, const std::string& id) {
-  backend.sessions.remove(id);
-  const absl::Status done = backend.store.delete_simulation(id);
-  if (done.ok()) spdlog::info("{} deleted", simulation_name(id));
-  return done;
+  const auto earlier = backend.store.find_request(key);
+  if (!earlier.ok()) return earlier.status();
+  if (!earlier->has_value()) return no_session_for(what, *record);
+  response = to_simulation(*record, nullptr);
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -58,18 +49,21 @@ template <typename Request>
 Reactor* SimulationService::command(Context* context, const Request* request, v1::Simulation* response,
                                     const char* what, const Act& act) {
   Reactor* reactor = context->DefaultReactor();
-  const absl::Status refused = guarded([&]() -> absl::Status {
+  bool answered = false;
+  const absl::Status done = guarded([&]() -> absl::Status {
     if (const absl::Status valid = check_message(*request); !valid.ok()) return valid;
     const auto id = parse_simulation_name(request->name(), "name");
     if (!id.ok()) return id.status();
+    if (const absl::Status valid = check_request_id(request->request_id()); !valid.ok()) return valid;
+    const RequestKey key = make_request_key(what, request->request_id(), *request);
     if (const auto session = backend_.sessions.find(*id); session != nullptr) {
-      act(*session, reply_to(backend_, *id, reactor, response));
+      answered = true;
+      act(*session, key, reply_to(backend_, *id, reactor, response));
       return absl::OkStatus();
     }
-    const auto record = backend_.store.get_simulation(*id);
-    return record.ok() ? cannot(what, *record) : record.status();
+    return answer_without_session(backend_, *id, what, key, *response);
   });
-  if (!refused.ok()) reactor->Finish(to_grpc_status(refused));
+  if (!answered) reactor->Finish(to_grpc_status(done));
   return reactor;
 }
 
@@ -117,26 +111,30 @@ Reactor* SimulationService::ListSimulations(Context* context, const v1::ListSimu
 
 Reactor* SimulationService::StartSimulation(Context* context, const v1::StartSimulationRequest* request,
                                             v1::Simulation* response) {
-  return command(context, request, response, "start",
-                 [](Session& session, Session::Reply reply) { session.start(std::move(reply)); });
+  return command(context, request, response, "start", [](Session& session, RequestKey key, Session::Reply reply) {
+    session.start(std::move(key), std::move(reply));
+  });
 }
 
 Reactor* SimulationService::PauseSimulation(Context* context, const v1::PauseSimulationRequest* request,
                                             v1::Simulation* response) {
-  return command(context, request, response, "pause",
-                 [](Session& session, Session::Reply reply) { session.pause(std::move(reply)); });
+  return command(context, request, response, "pause", [](Session& session, RequestKey key, Session::Reply reply) {
+    session.pause(std::move(key), std::move(reply));
+  });
 }
 
 Reactor* SimulationService::ResumeSimulation(Context* context, const v1::ResumeSimulationRequest* request,
                                              v1::Simulation* response) {
-  return command(context, request, response, "resume",
-                 [](Session& session, Session::Reply reply) { session.resume(std::move(reply)); });
+  return command(context, request, response, "resume", [](Session& session, RequestKey key, Session::Reply reply) {
+    session.resume(std::move(key), std::move(reply));
+  });
 }
 
 Reactor* SimulationService::StopSimulation(Context* context, const v1::StopSimulationRequest* request,
                                            v1::Simulation* response) {
-  return command(context, request, response, "stop",
-                 [](Session& session, Session::Reply reply) { session.stop("stopped by a client", std::move(reply)); });
+  return command(context, request, response, "stop", [](Session& session, RequestKey key, Session::Reply reply) {
+    session.stop("stopped by a client", std::move(key), std::move(reply));
+  });
 }
 
 Reactor* SimulationService::DeleteSimulation(Context* context, const v1::DeleteSimulationRequest* request,
@@ -145,25 +143,81 @@ Reactor* SimulationService::DeleteSimulation(Context* context, const v1::DeleteS
   const auto session = id.ok() ? backend_.sessions.find(*id) : nullptr;
   if (session != nullptr && check_message(*request).ok()) {
     Reactor* reactor = context->DefaultReactor();
-    session->stop("deleted", [this, reactor, id = *id](const absl::StatusOr<SessionView>&) {
-      reactor->Finish(to_grpc_status(guarded([&] { return delete_record(backend_, id); })));
-    });
+    session->abandon(
+        [this, id = *id] { return delete_simulation_record(backend_, id); },
+        [reactor](const absl::StatusOr<SessionView>& view) { reactor->Finish(to_grpc_status(view.status())); });
     return reactor;
   }
-  return answer(context, request, [&] { return id.ok() ? delete_record(backend_, *id) : id.status(); });
+  return answer(context, request, [&] { return id.ok() ? delete_simulation_record(backend_, *id) : id.status(); });
 }
 
 Reactor* SimulationService::Inject(Context* context, const v1::InjectRequest* request, v1::Simulation* response) {
-  return command(context, request, response, "inject", [this, request](Session& session, Session::Reply reply) {
-    const auto injection = to_injection_spec(request->injection());
-    if (!injection.ok()) return reply(with_prefix("injection", injection.status()));
-    session.inject(*injection, [this, request, id = session.id(), reply](absl::StatusOr<SessionView> view) {
-      if (!view.ok()) return reply(with_prefix("injection", view.status()));
-      if (const absl::Status noted = note_injection(backend_, id, request->injection()); !noted.ok()) {
-        spdlog::error("{}: an injection is not in the plan that is kept: {}", simulation_name(id), noted.ToString());
-      }
-      reply(std::move(view));
-    });
+  return command(context, request, response, "inject",
+                 [request](Session& session, RequestKey key, Session::Reply reply) {
+                   const auto injection = to_injection_spec(request->injection());
+                   if (!injection.ok()) return reply(with_prefix("injection", injection.status()));
+                   session.inject({*injection, request->injection().SerializeAsString()}, std::move(key),
+                                  [reply](absl::StatusOr<SessionView> view) {
+                                    if (!view.ok()) return reply(with_prefix("injection", view.status()));
+                                    reply(std::move(view));
+                                  });
+                 });
+}
+
+Reactor* SimulationService::CreateCheckpoint(Context* context, const v1::CreateCheckpointRequest* request,
+                                             v1::Checkpoint* response) {
+  return answer_later(context, request, backend_, [this, request, response] {
+    auto checkpoint = create_checkpoint(backend_, *request);
+    if (checkpoint.ok()) *response = *std::move(checkpoint);
+    return checkpoint.status();
+  });
+}
+
+Reactor* SimulationService::GetCheckpoint(Context* context, const v1::GetCheckpointRequest* request,
+                                          v1::Checkpoint* response) {
+  return answer(context, request, [&]() -> absl::Status {
+    const auto parts = parse_checkpoint_name(request->name(), "name");
+    if (!parts.ok()) return parts.status();
+    const auto record = backend_.store.get_checkpoint(parts->simulation, parts->id);
+    if (record.ok()) *response = to_checkpoint(*record);
+    return record.status();
+  });
+}
+
+Reactor* SimulationService::ListCheckpoints(Context* context, const v1::ListCheckpointsRequest* request,
+                                            v1::ListCheckpointsResponse* response) {
+  return answer(context, request, [&]() -> absl::Status {
+    const auto id = parse_simulation_name(request->parent(), "parent");
+    if (!id.ok()) return id.status();
+    const std::string collection = request->parent() + "/checkpoints";
+    const auto page = parse_page(collection, request->page_size(), request->page_token());
+    if (!page.ok()) return page.status();
+    const auto records = backend_.store.list_checkpoints(*id, one_more(*page));
+    if (!records.ok()) return records.status();
+    response->set_next_page_token(fill_page(collection, *page, *records, [&](const CheckpointRecord& record) {
+      *response->add_checkpoints() = to_checkpoint(record);
+    }));
+    return absl::OkStatus();
+  });
+}
+
+Reactor* SimulationService::DeleteCheckpoint(Context* context, const v1::DeleteCheckpointRequest* request,
+                                             google::protobuf::Empty*) {
+  return answer(context, request, [&]() -> absl::Status {
+    const auto parts = parse_checkpoint_name(request->name(), "name");
+    if (!parts.ok()) return parts.status();
+    if (auto done = backend_.store.delete_checkpoint(parts->simulation, parts->id); !done.ok()) return done;
+    backend_.checkpoint_files.remove(parts->simulation, parts->id);
+    return absl::OkStatus();
+  });
+}
+
+Reactor* SimulationService::RestoreSimulation(Context* context, const v1::RestoreSimulationRequest* request,
+                                              v1::Simulation* response) {
+  return answer_later(context, request, backend_, [this, request, response] {
+    auto simulation = restore_simulation(backend_, *request);
+    if (simulation.ok()) *response = *std::move(simulation);
+    return simulation.status();
   });
 }
 

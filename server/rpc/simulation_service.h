@@ -32,6 +32,15 @@ class SimulationService : public v1::SimulationService::CallbackService {
   Reactor* DeleteSimulation(Context* context, const v1::DeleteSimulationRequest* request,
                             google::protobuf::Empty* response) override;
   Reactor* Inject(Context* context, const v1::InjectRequest* request, v1::Simulation* response) override;
+  Reactor* CreateCheckpoint(Context* context, const v1::CreateCheckpointRequest* request,
+                            v1::Checkpoint* response) override;
+  Reactor* GetCheckpoint(Context* context, const v1::GetCheckpointRequest* request, v1::Checkpoint* response) override;
+  Reactor* ListCheckpoints(Context* context, const v1::ListCheckpointsRequest* request,
+                           v1::ListCheckpointsResponse* response) override;
+  Reactor* DeleteCheckpoint(Context* context, const v1::DeleteCheckpointRequest* request,
+                            google::protobuf::Empty* response) override;
+  Reactor* RestoreSimulation(Context* context, const v1::RestoreSimulationRequest* request,
+                             v1::Simulation* response) override;
   Reactor* GetSeries(Context* context, const v1::GetSeriesRequest* request, v1::GetSeriesResponse* response) override;
   Reactor* EvaluateSimulation(Context* context, const v1::EvaluateSimulationRequest* request,
                               v1::Evaluation* response) override;
@@ -39,8 +48,9 @@ class SimulationService : public v1::SimulationService::CallbackService {
       Context* context, const v1::ExportTissueDeckRequest* request) override;
 
  private:
-  using Act = std::function<void(Session& session, Session::Reply reply)>;
-  /// Has the session act and answers with the simulation as it is then; FAILED_PRECONDITION when it has ended.
+  using Act = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
+  /// Has the session act and answers with the simulation as it is then; FAILED_PRECONDITION when it has ended, unless
+  /// an equal request was carried out before that.
   template <typename Request>
   Reactor* command(Context* context, const Request* request, v1::Simulation* response, const char* what,
                    const Act& act);

@@ -1,8 +1,6 @@
 #include "server/sessions/session.h"
 
-#include <algorithm>
 #include <exception>
-#include <new>
 
 #include "absl/strings/str_cat.h"
 #include "server/sessions/memory.h"
@@ -36,8 +34,19 @@ SimulationState state_of(Phase phase) {
 }  // namespace
 
 Session::Session(SessionOptions options, std::unique_ptr<simulation::Simulation> simulation, WorkerPool& workers,
-                 SessionSink& sink)
-    : options_(std::move(options)), workers_(workers), sink_(sink), simulation_(std::move(simulation)) {
+                 SessionSink& sink, SessionHistory history)
+    : options_(std::move(options)),
+      workers_(workers),
+      sink_(sink),
+      simulation_(std::move(simulation)),
+      epoch_(options_.epoch),
+      history_(std::move(history)),
+      running_since_(Clock::now()),
+      wall_before_s_(history_.wall_s) {
+  const uint64_t step = simulation_->report().step;
+  catching_up_ = !history_.injections.empty() || history_.until_step > step || history_.stop_reason.has_value();
+  if (step > 0) saved_step_ = step;
+  view_.state = history_.state;
   view_.n_hexahedra = simulation_->n_hexahedra();
   view_.n_film_cells = simulation_->n_film_cells();
   view_.n_dofs = simulation_->n_dofs();
@@ -48,11 +57,13 @@ Session::Session(SessionOptions options, std::unique_ptr<simulation::Simulation>
 // ---- mailbox
 
 void Session::post(Command command) {
-  {
-    const std::lock_guard lock(mailbox_mutex_);
-    mailbox_.push_back(std::move(command));
-  }
+  queue(std::move(command));
   carry_out_when_idle();
+}
+
+void Session::queue(Command command) {
+  const std::lock_guard lock(mailbox_mutex_);
+  mailbox_.push_back(std::move(command));
 }
 
 bool Session::mailbox_empty() const {
@@ -82,91 +93,6 @@ void Session::carry_out_commands() {
   }
 }
 
-// Nothing that goes wrong here may cost the caller its answer.
-void Session::answer(const Reply& reply, const std::function<absl::Status()>& act) {
-  absl::StatusOr<SessionView> result = absl::UnknownError("");
-  try {
-    const absl::Status done = act();
-    if (done.ok()) {
-      result = full_view();
-    } else {
-      result = done;
-    }
-  } catch (const std::bad_alloc&) {
-    result = absl::ResourceExhaustedError(absl::StrCat("simulations/", options_.id, ": out of memory"));
-  } catch (const std::exception& error) {
-    result = absl::InternalError(absl::StrCat("simulations/", options_.id, ": ", error.what()));
-  }
-  reply(std::move(result));
-}
-
-void Session::command(const char* what, std::initializer_list<SimulationState> allowed, const Reply& reply,
-                      const std::function<absl::Status()>& act) {
-  if (std::find(allowed.begin(), allowed.end(), view_.state) != allowed.end()) return answer(reply, act);
-  reply(absl::FailedPreconditionError(
-      absl::StrCat("cannot ", what, ": simulations/", options_.id, " is ", state_name(view_.state))));
-}
-
-// ---- commands
-
-void Session::start(Reply reply) {
-  post([this, reply] {
-    command("start", {SimulationState::kReady}, reply, [this] {
-      run();
-      return absl::OkStatus();
-    });
-  });
-}
-
-void Session::pause(Reply reply) {
-  post([this, reply] {
-    command("pause", {SimulationState::kRunning}, reply, [this] {
-      leave_running();
-      set_state(SimulationState::kPaused, "");
-      show_to_viewers(true);
-      spdlog::info("simulations/{} paused at step {}", options_.id, view_.report.step);
-      return absl::OkStatus();
-    });
-  });
-}
-
-void Session::resume(Reply reply) {
-  post([this, reply] {
-    command("resume", {SimulationState::kPaused}, reply, [this] {
-      run();
-      return absl::OkStatus();
-    });
-  });
-}
-
-void Session::stop(std::string reason, Reply reply) {
-  post([this, reason, reply] {
-    command("stop", {SimulationState::kReady, SimulationState::kRunning, SimulationState::kPaused}, reply,
-            [this, &reason] {
-              finish(SimulationState::kStopped, reason);
-              return absl::OkStatus();
-            });
-  });
-}
-
-void Session::inject(simulation::InjectionSpec injection, Reply reply) {
-  post([this, injection, reply] {
-    command("inject", {SimulationState::kReady, SimulationState::kRunning, SimulationState::kPaused}, reply,
-            [this, &injection] {
-              const absl::Status done = simulation_->inject(injection);
-              if (done.ok()) {
-                note_changed_plan();
-                spdlog::info("simulations/{} takes an injection at step {}", options_.id, view_.report.step);
-              }
-              return done;
-            });
-  });
-}
-
-void Session::inspect(Reply reply) {
-  post([this, reply] { answer(reply, [] { return absl::OkStatus(); }); });
-}
-
 // ---- running
 
 void Session::run() {
@@ -174,6 +100,14 @@ void Session::run() {
   running_since_time_s_ = simulation_->report().time;
   set_state(SimulationState::kRunning, "");
   spdlog::info("simulations/{} runs from step {}", options_.id, view_.report.step);
+  schedule();
+}
+
+void Session::schedule() {
+  if (checkpoint_due_ == Clock::time_point()) {
+    checkpoint_due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                         std::chrono::duration<double>(options_.checkpoint_interval_s));
+  }
   if (scheduled_) return;
   scheduled_ = true;
   workers_.schedule(shared_from_this());
@@ -195,20 +129,29 @@ WorkerPool::Next Session::take_turn() {
   return next;
 }
 
+/// Whether there is a step to take, now or when its time comes.
+bool Session::takes_steps() const {
+  return simulation_ != nullptr && !suspended_ && (catching_up_ || view_.state == SimulationState::kRunning);
+}
+
 WorkerPool::Next Session::advance_slice() {
   const Clock::time_point begin = Clock::now();
-  while (view_.state == SimulationState::kRunning) {
-    const bool waits = options_.real_time && !preview_is_due() && due_time() > Clock::now();
+  while (takes_steps()) {
+    if (catching_up_) catch_up();
+    if (!takes_steps()) break;
+    const bool previews = preview_is_due() && !catching_up_;
+    const bool waits = options_.real_time && !previews && !catching_up_ && due_time() > Clock::now();
     if (waits) return {WorkerPool::Next::kLater, due_time()};
     try {
-      preview_is_due() ? advance_preview() : advance_one_step();
+      previews ? advance_preview() : advance_one_step();
     } catch (const std::exception& error) {
       finish(SimulationState::kFailed, absl::StrCat("step ", view_.report.step + 1, ": ", error.what()));
     }
     carry_out_commands();
+    checkpoint_when_due();
     if (Clock::now() - begin >= kSlice) break;
   }
-  if (view_.state != SimulationState::kRunning) return {};
+  if (!takes_steps()) return {};
   return {WorkerPool::Next::kAgain, {}};
 }
 
@@ -225,6 +168,11 @@ void Session::advance_one_step() {
   if (phase != Phase::kFailed) record_step(wall_ms);
   if (phase != Phase::kRunning) return finish(state_of(phase), simulation_->reason());
   show_to_viewers(false);
+}
+
+void Session::set_reason(std::string reason) {
+  const std::lock_guard lock(view_mutex_);
+  view_.reason = std::move(reason);
 }
 
 void Session::set_state(SimulationState state, std::string reason) {
@@ -249,24 +197,33 @@ void Session::finish(SimulationState state, const std::string& reason) {
   simulation_ = nullptr;
   preview_ = nullptr;
   preview_frame_ = nullptr;
+  end_catching_up();
   give_memory_back();
 }
 
 void Session::conclude() {
   spdlog::info("simulations/{} is {} after {} steps, {:.3f} s simulated{}{}", options_.id, state_name(view_.state),
                view_.report.step, view_.report.time, view_.reason.empty() ? "" : ": ", view_.reason);
-  flush_series();
   judge_preview();
   const SessionView view = full_view();
   {
     const std::lock_guard lock(view_mutex_);
     view_ = view;
   }
-  const auto meshes = topology();
+  topology();
   last_frame_ = make_frame({}, true);
-  const absl::Status kept = sink_.ended(options_.id, view, *meshes, *last_frame_);
-  if (!kept.ok()) spdlog::error("simulations/{}: its result is not in the store: {}", options_.id, kept.ToString());
+  if (const absl::Status kept = keep_result(); !kept.ok()) {
+    spdlog::error("simulations/{}: its result is not in the store: {}", options_.id, kept.ToString());
+  }
   for (const auto& viewer : viewers_) viewer->offer(last_frame_);
+}
+
+absl::Status Session::keep_result() {
+  if (last_frame_ == nullptr) return absl::DataLossError("there is none");
+  absl::Status kept = flush_series();
+  if (kept.ok()) kept = sink_.ended(options_.id, cached_view(), *topology_, *last_frame_);
+  result_kept_ = kept.ok();
+  return kept;
 }
 
 }  // namespace lipofill::server

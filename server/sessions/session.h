@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -10,100 +9,95 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "core/simulation/preview.h"
 #include "core/simulation/simulation.h"
 #include "server/sessions/frame.h"
+#include "server/sessions/session_sink.h"
 #include "server/sessions/viewer.h"
 #include "server/sessions/worker_pool.h"
 #include "server/store/records.h"
 
 namespace lipofill::server {
 
-/// One line of the time series: the report of a step and what it cost.
-struct SeriesEntry {
-  simulation::StepReport report;
-  double wall_ms = 0.0;
-};
-
-/// kOutdated: it was shown, then the plan changed.
-enum class PreviewState { kPending, kRunning, kDone, kFailed, kOutdated };
-
-inline const char* preview_state_name(PreviewState state) {
-  constexpr const char* kNames[] = {"PENDING", "RUNNING", "DONE", "FAILED", "OUTDATED"};
-  return kNames[static_cast<int>(state)];
-}
-
-/// The preview of a simulation.
-struct PreviewView {
-  PreviewState state = PreviewState::kPending;
-  std::string reason;  ///< why it came to rest, failed or is outdated
-  simulation::StepReport report;
-  int n_hexahedra = 0;
-  int n_film_cells = 0;
-  double wall_s = 0.0;
-  std::optional<simulation::PreviewDifference> difference;  ///< once the simulation has its result
-};
-
-/// A simulation as it is between two steps.
-struct SessionView {
-  SimulationState state = SimulationState::kReady;
-  std::string reason;
-  simulation::StepReport report;
-  std::vector<simulation::ZoneReport> zones;
-  std::vector<simulation::LigamentReport> ligaments;
-  int n_hexahedra = 0;
-  int n_film_cells = 0;
-  int n_dofs = 0;
-  double wall_s = 0.0;          ///< spent RUNNING, but for the preview
-  double step_ms_median = 0.0;  ///< computing time of a step
-  std::string state_hash;       ///< empty in a cached view of a live simulation
-  std::optional<PreviewView> preview;
-};
-
-class Session;
-
-/// Where a session leaves what must last. Called on whichever thread runs the session, between steps.
-class SessionSink {
- public:
-  virtual ~SessionSink() = default;
-  virtual absl::Status append_series(const std::string& id, const std::vector<SeriesEntry>& rows) = 0;
-  /// After this succeeds the session can be forgotten: the store knows all of it.
-  virtual absl::Status ended(const std::string& id, const SessionView& view, const Topology& topology,
-                             const Frame& frame) = 0;
-};
-
 struct SessionOptions {
   std::string id;
   uint64_t epoch = 0;
-  bool real_time = false;  ///< at most one simulated second a second
-  bool preview = false;    ///< a coarse model's settled shape first
+  bool real_time = false;              ///< at most one simulated second a second
+  bool preview = false;                ///< a coarse model's settled shape first
+  double checkpoint_interval_s = 0.0;  ///< wall time RUNNING between automatic checkpoints; 0: none
+};
+
+/// An injection as the core takes it and as the sink keeps it.
+struct InjectionOrder {
+  simulation::InjectionSpec spec;
+  std::string message;
+};
+
+/// A state to go back to: a simulation that is in it, and the plan that goes with it.
+struct RestoreOrder {
+  CheckpointRecord checkpoint;
+  std::unique_ptr<simulation::Simulation> simulation;
+  std::string spec_message;
+};
+
+/// What was acknowledged before the daemon was started again, as far as it is not in the state the session goes on
+/// from. Commands take effect after the same steps as the first time.
+struct SessionHistory {
+  SimulationState state = SimulationState::kReady;
+  double wall_s = 0.0;  ///< spent RUNNING
+  struct Injection {
+    uint64_t step = 0;
+    simulation::InjectionSpec spec;
+  };
+  std::deque<Injection> injections;
+  uint64_t until_step = 0;  ///< where the last command took effect
+  std::optional<std::string> stop_reason;
+  std::string note;  ///< what was not as it should be
 };
 
 /// A simulation that lives in the daemon, not in a connection: steps on the worker pool while RUNNING, takes commands
 /// between steps, and shows its frames to viewers. The results depend on the plan and on the steps between which
-/// commands took effect, never on workers, viewers or the clock.
+/// commands took effect, never on workers, viewers, the clock, or on how often the daemon was started again.
+///
+/// A command is in the sink before it takes effect, and takes effect before it is answered: whatever was answered is
+/// there after the end of the daemon, however that came. A session that is brought back first catches up: it repeats
+/// what was acknowledged from its state on; commands that come meanwhile wait until that is done.
 ///
 /// One lock (`execution_`) is held by whoever acts on the simulation. Commands go through a mailbox; they are carried
 /// out at once when the simulation is at rest between turns, otherwise by the worker after the step at hand. Checked by
-/// tests/unit/server/session_test.cc and tests/integration/service/.
+/// tests/unit/server/session_test.cc, tests/unit/server/session_resume_test.cc and tests/integration/.
 class Session : public WorkerPool::Task, public std::enable_shared_from_this<Session> {
  public:
   using Reply = std::function<void(absl::StatusOr<SessionView>)>;
 
   Session(SessionOptions options, std::unique_ptr<simulation::Simulation> simulation, WorkerPool& workers,
-          SessionSink& sink);
+          SessionSink& sink, SessionHistory history = {});
 
   const std::string& id() const { return options_.id; }
 
+  /// Lets one that was brought back go on. Once, when it is where others find it.
+  void go_on();
+
   /// Commands. The reply comes within one step, on any thread: FAILED_PRECONDITION naming the state where it does not
-  /// fit.
-  void start(Reply reply);
-  void pause(Reply reply);
-  void resume(Reply reply);
-  void stop(std::string reason, Reply reply);
-  void inject(simulation::InjectionSpec injection, Reply reply);
+  /// fit, what the sink says where it cannot be kept. A request that was carried out before is answered and no more.
+  void start(RequestKey request, Reply reply);
+  void pause(RequestKey request, Reply reply);
+  void resume(RequestKey request, Reply reply);
+  void stop(std::string reason, RequestKey request, Reply reply);
+  void inject(InjectionOrder order, RequestKey request, Reply reply);
+  void restore(RestoreOrder order, RequestKey request, Reply reply);
   /// The figures as they are now, with the state hash.
   void inspect(Reply reply);
+  /// Ends it without a result once `forget` has deleted what is kept of it.
+  void abandon(std::function<absl::Status()> forget, Reply reply);
+
+  /// Keeps the present state under an id.
+  using CheckpointReply = std::function<void(absl::StatusOr<CheckpointRecord>)>;
+  void checkpoint(std::string checkpoint, RequestKey request, CheckpointReply reply);
+  /// Keeps the present state, unless it is kept already or can be had at no cost.
+  using Done = std::function<void(absl::Status)>;
+  void save(Done done);
+  /// For the end of the daemon: no step and no command any more, the state kept.
+  void suspend(Done done);
 
   /// Shows the meshes and the present frame to the viewer, then every frame it wants, until unwatch() or the end.
   void watch(std::shared_ptr<Viewer> viewer);
@@ -126,35 +120,61 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   using Clock = WorkerPool::Clock;
 
   void post(Command command);
+  void queue(Command command);
   void carry_out_when_idle();
   bool mailbox_empty() const;
 
   // All below: with `execution_` held.
   void carry_out_commands();
+  absl::Status guarded(const std::function<absl::Status()>& act);
   void answer(const Reply& reply, const std::function<absl::Status()>& act);
-  void command(const char* what, std::initializer_list<SimulationState> allowed, const Reply& reply,
+  void command(const char* what, std::vector<SimulationState> allowed, const RequestKey& request, const Reply& reply,
                const std::function<absl::Status()>& act);
+  absl::Status check_allowed(const char* what, const std::vector<SimulationState>& allowed) const;
+  absl::Status keep_and_do(CommandKind kind, const std::string& payload, const RequestKey& request,
+                           const std::function<void()>& act);
+  CommandRecord record_of(CommandKind kind, const std::string& payload) const;
+
   void run();
+  void schedule();
+  bool takes_steps() const;
   WorkerPool::Next advance_slice();
   void advance_one_step();
   void record_step(double wall_ms);
-  void flush_series();
+  absl::Status flush_series();
+  void forget_pending(size_t n_rows);
   void set_state(SimulationState state, std::string reason);
+  void set_reason(std::string reason);
   void finish(SimulationState state, const std::string& reason);
   void conclude();
+  absl::Status keep_result();
   void leave_running();
+
+  void catch_up();
+  void end_catching_up();
+  std::string catching_up_text() const;
+
+  absl::StatusOr<CheckpointRecord> keep_checkpoint(CheckpointKind kind, const std::string& id,
+                                                   const RequestKey& request);
+  void checkpoint_when_due();
+  void checkpoint_automatically();
+  absl::Status save_now();
+  absl::Status go_back(RestoreOrder& order, const RequestKey& request);
+
   void update_view();
   SessionView full_view();
   std::shared_ptr<const Topology> topology();
   std::shared_ptr<const Frame> make_frame(const std::vector<std::string>& meshes, bool end);
   void show_to_viewers(bool at_rest);
+  void show_again_from_here();
   Clock::time_point due_time() const;
   bool preview_is_due() const;
   void advance_preview();
   void advance_preview(PreviewView& view);
   std::shared_ptr<const Frame> make_preview_frame() const;
   void conclude_preview();
-  void note_changed_plan();
+  /// @param why  a preview that was shown is not of the plan any more
+  void note_changed_plan(const std::string& why);
   void judge_preview();
   void note_preview(const PreviewView& preview);
 
@@ -167,7 +187,15 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
 
   std::mutex execution_;
   std::unique_ptr<simulation::Simulation> simulation_;  ///< gone once ended
-  bool scheduled_ = false;                              ///< the pool has it
+  uint64_t epoch_;
+  bool scheduled_ = false;  ///< the pool has it
+  bool suspended_ = false;
+  bool result_kept_ = false;
+  SessionHistory history_;
+  bool catching_up_ = false;
+  std::deque<Command> held_;  ///< until it has caught up
+  Clock::time_point checkpoint_due_;
+  std::optional<uint64_t> saved_step_;  ///< step of the last checkpoint
   std::vector<float> step_ms_;
   Clock::time_point running_since_;
   double running_since_time_s_ = 0.0;  ///< simulated

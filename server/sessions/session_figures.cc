@@ -10,6 +10,8 @@ namespace lipofill::server {
 namespace {
 
 constexpr size_t kSeriesChunk = 500;
+/// Rows that wait for room in the store; more are lost.
+constexpr size_t kMostPending = 100'000;
 
 double median(std::vector<float> values) {
   if (values.empty()) return 0.0;
@@ -29,23 +31,28 @@ void Session::record_step(double wall_ms) {
     pending_.push_back({simulation_->report(), wall_ms});
     n_pending = pending_.size();
   }
-  if (n_pending >= kSeriesChunk) flush_series();
+  if (n_pending % kSeriesChunk != 0) return;
+  if (const absl::Status kept = flush_series(); !kept.ok()) {
+    spdlog::error("simulations/{}: {} rows of its series wait: {}", options_.id, n_pending, kept.ToString());
+  }
+  if (n_pending < kMostPending) return;
+  spdlog::error("simulations/{}: {} rows of its series are lost", options_.id, n_pending);
+  forget_pending(n_pending);
 }
 
 // Rows leave `pending_` only once they are in the sink, so that a reader who looks here first and there next misses
 // none.
-void Session::flush_series() {
-  std::vector<SeriesEntry> rows;
-  {
-    const std::lock_guard lock(view_mutex_);
-    rows = pending_;
-  }
-  if (rows.empty()) return;
-  if (const absl::Status kept = sink_.append_series(options_.id, rows); !kept.ok()) {
-    spdlog::error("simulations/{}: {} rows of its series are lost: {}", options_.id, rows.size(), kept.ToString());
-  }
+absl::Status Session::flush_series() {
+  const std::vector<SeriesEntry> rows = pending_series(0);
+  if (rows.empty()) return absl::OkStatus();
+  if (const absl::Status kept = sink_.append_series(options_.id, rows); !kept.ok()) return kept;
+  forget_pending(rows.size());
+  return absl::OkStatus();
+}
+
+void Session::forget_pending(size_t n_rows) {
   const std::lock_guard lock(view_mutex_);
-  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(rows.size()));
+  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(n_rows));
 }
 
 void Session::update_view() {

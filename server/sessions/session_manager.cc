@@ -52,19 +52,40 @@ std::map<std::string, std::shared_ptr<Session>> SessionManager::snapshot() const
   return sessions_;
 }
 
-void SessionManager::stop_all(const std::string& reason) {
+void SessionManager::bring_back(std::shared_ptr<Session> session) {
+  {
+    const std::lock_guard lock(mutex_);
+    sessions_[session->id()] = session;
+  }
+  session->go_on();
+}
+
+absl::Status SessionManager::ask_all(const Act& act) const {
+  std::vector<std::future<absl::Status>> answers;
+  for (const auto& [id, session] : snapshot()) {
+    auto done = std::make_shared<std::promise<absl::Status>>();
+    answers.push_back(done->get_future());
+    act(*session, [done](absl::Status status) { done->set_value(std::move(status)); });
+  }
+  absl::Status all;
+  for (auto& answer : answers) all.Update(answer.get());
+  return all;
+}
+
+absl::Status SessionManager::checkpoint_all() {
+  return ask_all([](Session& session, Session::Done done) { session.save(std::move(done)); });
+}
+
+void SessionManager::suspend_all(const std::string& reason) {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
-  std::vector<std::future<void>> ended;
-  for (const auto& [id, session] : snapshot()) {
-    session->close_viewers(absl::UnavailableError(reason));
-    auto done = std::make_shared<std::promise<void>>();
-    ended.push_back(done->get_future());
-    session->stop(reason, [done](const absl::StatusOr<SessionView>&) { done->set_value(); });
-  }
-  for (auto& end : ended) end.wait();
+  // What could not be kept is in the log; the simulation then goes on from an earlier state.
+  ask_all([&reason](Session& session, Session::Done done) {
+    session.close_viewers(absl::UnavailableError(reason));
+    session.suspend(std::move(done));
+  }).IgnoreError();
 }
 
 }  // namespace lipofill::server

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -29,18 +30,26 @@ class SessionManager {
     SessionManager* manager_;
   };
 
-  /// RESOURCE_EXHAUSTED naming the bound; UNAVAILABLE once stop_all() was called.
+  /// RESOURCE_EXHAUSTED naming the bound; UNAVAILABLE once suspend_all() was called.
   absl::StatusOr<Place> reserve();
-  /// False once stop_all() was called.
+  /// False once suspend_all() was called.
   [[nodiscard]] bool add(Place place, std::shared_ptr<Session> session);
   std::shared_ptr<Session> find(const std::string& id) const;
   void remove(const std::string& id);
+  /// Adds one that was there before the daemon was started again, whatever the bound, and lets it go on.
+  void bring_back(std::shared_ptr<Session> session);
 
-  /// Takes no more sessions and ends all there are, with viewers closed first. Returns when every one has ended.
-  void stop_all(const std::string& reason);
+  /// Has every session keep its state; they go on meanwhile. Returns when all are done, with the first error.
+  absl::Status checkpoint_all();
+  /// For the end of the daemon: takes no more sessions, ends viewers' streams with UNAVAILABLE and the reason, has
+  /// every session keep its state and take no step or command any more. Returns when all are done.
+  void suspend_all(const std::string& reason);
 
  private:
   std::map<std::string, std::shared_ptr<Session>> snapshot() const;
+  using Act = std::function<void(Session& session, Session::Done done)>;
+  /// Has all sessions act, each in its own time, and waits for them; the first error.
+  absl::Status ask_all(const Act& act) const;
 
   const int max_sessions_;
   mutable std::mutex mutex_;

@@ -59,7 +59,7 @@ void Session::advance_preview(PreviewView& view) {
 
 std::shared_ptr<const Frame> Session::make_preview_frame() const {
   auto frame = std::make_shared<Frame>();
-  frame->epoch = options_.epoch;
+  frame->epoch = epoch_;
   frame->sequence = simulation_->report().step;
   frame->time_s = preview_->report().time;
   frame->preview = true;
@@ -78,7 +78,7 @@ void Session::conclude_preview() {
 }
 
 /// A preview under way begins anew; one that was shown is of another plan, and not shown to who comes later.
-void Session::note_changed_plan() {
+void Session::note_changed_plan(const std::string& why) {
   if (!view_.preview) return;
   PreviewView view = *view_.preview;
   if (view.state == PreviewState::kRunning) {
@@ -86,7 +86,7 @@ void Session::note_changed_plan() {
     view = PreviewView();
   } else if (view.state == PreviewState::kDone) {
     view.state = PreviewState::kOutdated;
-    view.reason = "an injection was added after it";
+    view.reason = why;
     preview_frame_ = nullptr;
   }
   note_preview(view);

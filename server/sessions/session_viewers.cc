@@ -63,7 +63,7 @@ std::shared_ptr<const Topology> Session::topology() {
 
 std::shared_ptr<const Frame> Session::make_frame(const std::vector<std::string>& meshes, bool end) {
   auto frame = std::make_shared<Frame>();
-  frame->epoch = options_.epoch;
+  frame->epoch = epoch_;
   frame->sequence = simulation_->report().step;
   frame->time_s = simulation_->report().time;
   frame->end = end;
@@ -84,6 +84,12 @@ void Session::show_to_viewers(bool at_rest) {
   if (due.empty()) return;
   const auto frame = make_frame({meshes.begin(), meshes.end()}, false);
   for (const auto& viewer : due) viewer->offer(frame);
+}
+
+// The simulation is at another place of its time, in a new epoch.
+void Session::show_again_from_here() {
+  for (const auto& viewer : viewers_) viewer->rewind();
+  show_to_viewers(true);
 }
 
 }  // namespace lipofill::server

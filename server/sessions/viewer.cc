@@ -113,6 +113,13 @@ void Viewer::skip_waiting_frames() {
   skipped_ += std::erase_if(frames_, is_skipped);
 }
 
+void Viewer::rewind() {
+  const std::lock_guard lock(mutex_);
+  next_due_s_ = 0.0;
+  offered_sequence_.reset();
+  unacknowledged_.clear();
+}
+
 void Viewer::queue_frame(std::shared_ptr<const Frame> frame) {
   const size_t bytes = frame->size_bytes();
   if (options_.delivery == Delivery::kLatest) {
@@ -166,7 +173,8 @@ FrameToSend Viewer::take_frame(Clock::time_point now) {
 absl::Status Viewer::acknowledge(uint64_t epoch, uint64_t sequence) {
   {
     const std::lock_guard lock(mutex_);
-    if (epoch != sent_epoch_) {
+    if (epoch < sent_epoch_) return absl::OkStatus();  // under way when the simulation went back
+    if (epoch > sent_epoch_) {
       return field_violation("epoch", absl::StrCat("is ", epoch, ", that of the frames sent is ", sent_epoch_));
     }
     if (sequence > sent_sequence_) {

@@ -64,6 +64,8 @@ class Viewer {
   /// count: no later frame may come.
   bool wants(double time_s, bool at_rest = false, Clock::time_point now = Clock::now()) const;
   void offer(std::shared_ptr<const Frame> frame);
+  /// The simulated time of what comes may be earlier than that of what came.
+  void rewind();
   /// Ends the stream after what is queued when OK, at once when not.
   void close(absl::Status status);
   bool closed() const;

@@ -17,6 +17,7 @@ class DataDirectory {
 
   std::filesystem::path database() const { return path_ / "lipofill.sqlite"; }
   std::filesystem::path scans() const { return path_ / "scans"; }
+  std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
 
  private:
   DataDirectory(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}

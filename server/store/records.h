@@ -60,6 +60,40 @@ struct SimulationRecord {
   std::string reason;
   std::string summary_message;
   int64_t create_time_us = 0;
+  std::string origin = {};  ///< simulations/{simulation}/checkpoints/{checkpoint} it began from; empty: from its plan
+};
+
+/// A client's command. Those that set the state are told by it: start and resume RUNNING, pause PAUSED.
+enum class CommandKind { kStart = 1, kPause, kResume, kStop, kInject, kRestore };
+
+/// One acknowledged command, in the order they took effect. A command is on course unless its simulation was restored
+/// to a state before it.
+struct CommandRecord {
+  std::string simulation;
+  uint64_t number = 0;  ///< 1, 2, ...; given by the store
+  CommandKind kind = CommandKind::kStart;
+  uint64_t step = 0;    ///< it took effect after this step
+  std::string payload;  ///< kInject: the injection; kStop: the reason; kRestore: the checkpoint's id
+  int64_t create_time_us = 0;
+};
+
+/// kAutomatic: made by the daemon, gone with the run. kAsked: made by a client. kOrigin: what a simulation began from.
+enum class CheckpointKind { kAutomatic = 1, kAsked, kOrigin };
+
+/// A state of a simulation, kept in a file.
+struct CheckpointRecord {
+  std::string simulation;
+  std::string id;
+  CheckpointKind kind = CheckpointKind::kAutomatic;
+  bool on_course = true;  ///< the simulation has not since been restored to a state before it
+  uint64_t step = 0;
+  double time_s = 0.0;        ///< simulated
+  double wall_s = 0.0;        ///< spent RUNNING until then
+  uint64_t last_command = 0;  ///< number of the last command that is in the state; given by the store
+  uint64_t size_bytes = 0;    ///< of the file
+  std::string sha256;         ///< of the file's body
+  std::string state_hash;
+  int64_t create_time_us = 0;
 };
 
 /// What a viewer of an ended simulation is shown.

@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include "absl/strings/str_cat.h"
+#include "server/store/durable_file.h"
 
 namespace lipofill::server {
 
@@ -39,6 +40,10 @@ int64_t Query::integer(int column) const {
   return sqlite3_column_int64(statement_, column);
 }
 
+double Query::real(int column) const {
+  return sqlite3_column_double(statement_, column);
+}
+
 std::string Query::text(int column) const {
   const void* bytes = sqlite3_column_blob(statement_, column);
   const int size = sqlite3_column_bytes(statement_, column);
@@ -47,6 +52,10 @@ std::string Query::text(int column) const {
 
 void Query::bind_one(int index, int64_t value) {
   if (status_.ok()) note(sqlite3_bind_int64(statement_, index, value));
+}
+
+void Query::bind_one(int index, double value) {
+  if (status_.ok()) note(sqlite3_bind_double(statement_, index, value));
 }
 
 void Query::bind_one(int index, const std::string& value) {
@@ -106,9 +115,13 @@ absl::Status Database::error(int code) const {
     case SQLITE_NOMEM:
     case SQLITE_TOOBIG:
       return absl::ResourceExhaustedError(message);
+    case SQLITE_IOERR:
+      if (is_out_of_space(sqlite3_system_errno(handle_))) {
+        return absl::ResourceExhaustedError("store: no space is left in the data directory");
+      }
+      return absl::UnavailableError(message);
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-    case SQLITE_IOERR:
     case SQLITE_READONLY:
     case SQLITE_CANTOPEN:
       return absl::UnavailableError(message);

@@ -41,6 +41,7 @@ class Query {
   const absl::Status& status() const { return status_; }
 
   int64_t integer(int column) const;
+  double real(int column) const;
   uint64_t unsigned_integer(int column) const { return static_cast<uint64_t>(integer(column)); }
   std::string text(int column) const;  ///< text or blob
 
@@ -49,6 +50,7 @@ class Query {
   void bind_one(int index, int value) { bind_one(index, static_cast<int64_t>(value)); }
   void bind_one(int index, uint64_t value) { bind_one(index, static_cast<int64_t>(value)); }
   void bind_one(int index, bool value) { bind_one(index, static_cast<int64_t>(value)); }
+  void bind_one(int index, double value);
   void bind_one(int index, const std::string& value);
   void note(int code);
 

@@ -66,10 +66,12 @@ absl::Status SqliteStore::delete_model(const std::string& patient, const std::st
   const std::lock_guard lock(mutex_);
   Transaction transaction(*database_);
   if (!transaction.status().ok()) return transaction.status();
+  const std::string name = model_name(patient, id);
+  if (auto unused = check_unused(name, name + '\0'); !unused.ok()) return unused;
   Query remove(*database_, "DELETE FROM models WHERE patient = ? AND id = ?");
   absl::Status done = remove.bind(patient, id).run();
   if (done.ok() && database_->changes() == 0) return no_model(patient, id);
-  done.Update(forget_requests(model_name(patient, id)));
+  done.Update(forget_requests(name));
   if (done.ok()) done.Update(transaction.commit());
   return done;
 }

@@ -94,6 +94,7 @@ absl::Status SqliteStore::delete_patient(const std::string& id, bool force) {
     return absl::FailedPreconditionError(absl::StrCat(patient_name(id), " has ", count.integer(0), " scans and ",
                                                       count.integer(1), " models; delete them first, or force"));
   }
+  if (auto unused = check_unused(patient_name(id) + "/", patient_name(id) + "0"); !unused.ok()) return unused;
   Query remove(*database_, "DELETE FROM patients WHERE id = ?");
   absl::Status done = remove.bind(id).run();
   done.Update(forget_requests(patient_name(id)));

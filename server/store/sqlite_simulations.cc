@@ -4,7 +4,7 @@
 namespace lipofill::server {
 namespace {
 
-#define SIMULATION_COLUMNS "id, model, display_name, spec, state, reason, summary, create_time_us"
+#define SIMULATION_COLUMNS "id, model, display_name, spec, state, reason, summary, create_time_us, origin"
 
 SimulationRecord simulation_of(const Query& row) {
   SimulationRecord simulation;
@@ -16,6 +16,7 @@ SimulationRecord simulation_of(const Query& row) {
   simulation.reason = row.text(5);
   simulation.summary_message = row.text(6);
   simulation.create_time_us = row.integer(7);
+  simulation.origin = row.text(8);
   return simulation;
 }
 
@@ -33,19 +34,39 @@ absl::StatusOr<SimulationRecord> SqliteStore::create_simulation(const Simulation
   const auto made = read_request(request);
   if (!made.ok()) return made.status();
   if (made->has_value()) return read_simulation((**made).substr(simulation_name("").size()));
-  Query insert(*database_, "INSERT INTO simulations (" SIMULATION_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
-  absl::Status done = insert
-                          .bind(simulation.id, simulation.model, simulation.display_name, simulation.spec_message,
-                                static_cast<int>(simulation.state), simulation.reason, simulation.summary_message,
-                                simulation.create_time_us)
-                          .run();
-  if (absl::IsAlreadyExists(done)) {
-    return absl::AlreadyExistsError(absl::StrCat(simulation_name(simulation.id), " exists"));
-  }
+  absl::Status done = write_simulation(simulation);
   done.Update(write_request(request, simulation_name(simulation.id)));
   if (done.ok()) done.Update(transaction.commit());
   if (!done.ok()) return done;
   return simulation;
+}
+
+absl::StatusOr<SimulationRecord> SqliteStore::create_simulation_from(const SimulationRecord& simulation,
+                                                                     const CheckpointRecord& origin,
+                                                                     const RequestKey& request) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  const auto made = read_request(request);
+  if (!made.ok()) return made.status();
+  if (made->has_value()) return read_simulation((**made).substr(simulation_name("").size()));
+  absl::Status done = write_simulation(simulation);
+  done.Update(write_checkpoint(origin));
+  done.Update(write_request(request, simulation_name(simulation.id)));
+  if (done.ok()) done.Update(transaction.commit());
+  if (!done.ok()) return done;
+  return simulation;
+}
+
+absl::Status SqliteStore::write_simulation(const SimulationRecord& simulation) {
+  Query insert(*database_, "INSERT INTO simulations (" SIMULATION_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  const absl::Status done = insert
+                                .bind(simulation.id, simulation.model, simulation.display_name, simulation.spec_message,
+                                      static_cast<int>(simulation.state), simulation.reason, simulation.summary_message,
+                                      simulation.create_time_us, simulation.origin)
+                                .run();
+  if (!absl::IsAlreadyExists(done)) return done;
+  return absl::AlreadyExistsError(absl::StrCat(simulation_name(simulation.id), " exists"));
 }
 
 absl::StatusOr<SimulationRecord> SqliteStore::get_simulation(const std::string& id) {
@@ -70,13 +91,6 @@ absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_simulations(cons
   return simulations;
 }
 
-absl::Status SqliteStore::update_simulation_spec(const std::string& id, const std::string& spec_message) {
-  const std::lock_guard lock(mutex_);
-  Query update(*database_, "UPDATE simulations SET spec = ? WHERE id = ?");
-  const absl::Status done = update.bind(spec_message, id).run();
-  return done.ok() && database_->changes() == 0 ? no_simulation(id) : done;
-}
-
 absl::Status SqliteStore::end_simulation(const SimulationRecord& ended, const SimulationResult& result) {
   const std::lock_guard lock(mutex_);
   Transaction transaction(*database_);
@@ -86,14 +100,39 @@ absl::Status SqliteStore::end_simulation(const SimulationRecord& ended, const Si
   if (done.ok() && database_->changes() == 0) return no_simulation(ended.id);
   Query insert(*database_, "INSERT OR REPLACE INTO simulation_results VALUES (?, ?, ?)");
   done.Update(insert.bind(ended.id, result.meshes_message, result.frame_message).run());
+  Query drop(*database_, "DELETE FROM checkpoints WHERE simulation = ? AND kind = ?");
+  done.Update(drop.bind(ended.id, static_cast<int>(CheckpointKind::kAutomatic)).run());
   if (done.ok()) done.Update(transaction.commit());
   return done;
 }
 
+absl::Status SqliteStore::set_simulation_state(const std::string& id, SimulationState state,
+                                               const std::string& reason) {
+  const std::lock_guard lock(mutex_);
+  Query update(*database_, "UPDATE simulations SET state = ?, reason = ? WHERE id = ?");
+  const absl::Status done = update.bind(static_cast<int>(state), reason, id).run();
+  return done.ok() && database_->changes() == 0 ? no_simulation(id) : done;
+}
+
 absl::Status SqliteStore::append_series(const std::string& id, const SeriesChunk& chunk) {
   const std::lock_guard lock(mutex_);
+  return write_rows(id, chunk);
+}
+
+absl::Status SqliteStore::write_rows(const std::string& simulation, const SeriesChunk& rows) {
   Query insert(*database_, "INSERT INTO simulation_series VALUES (?, ?, ?, ?)");
-  return insert.bind(id, chunk.first_step, chunk.last_step, chunk.rows_message).run();
+  return insert.bind(simulation, rows.first_step, rows.last_step, rows.rows_message).run();
+}
+
+absl::Status SqliteStore::cut_series(const std::string& id, uint64_t last_step) {
+  const std::lock_guard lock(mutex_);
+  return erase_rows(id, last_step);
+}
+
+// A chunk ends at every checkpoint, so none lies on both sides of the step.
+absl::Status SqliteStore::erase_rows(const std::string& simulation, uint64_t last_step) {
+  Query remove(*database_, "DELETE FROM simulation_series WHERE simulation = ? AND last_step > ?");
+  return remove.bind(simulation, last_step).run();
 }
 
 absl::StatusOr<std::optional<SeriesChunk>> SqliteStore::next_series_chunk(const std::string& id, uint64_t after_step) {
@@ -132,14 +171,34 @@ absl::Status SqliteStore::delete_simulation(const std::string& id) {
   return done;
 }
 
-absl::StatusOr<int> SqliteStore::fail_unended_simulations(const std::string& reason) {
+absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_unended_simulations() {
   const std::lock_guard lock(mutex_);
-  Query update(*database_, "UPDATE simulations SET state = ?, reason = ? WHERE state < ?");
-  const absl::Status done =
-      update.bind(static_cast<int>(SimulationState::kFailed), reason, static_cast<int>(SimulationState::kSettled))
-          .run();
-  if (!done.ok()) return done;
-  return database_->changes();
+  Query query(*database_, "SELECT " SIMULATION_COLUMNS " FROM simulations WHERE state < ? ORDER BY id");
+  query.bind(static_cast<int>(SimulationState::kSettled));
+  std::vector<SimulationRecord> simulations;
+  while (query.next()) simulations.push_back(simulation_of(query));
+  if (!query.status().ok()) return query.status();
+  return simulations;
+}
+
+absl::StatusOr<uint64_t> SqliteStore::begin_epoch(const std::string& id, int64_t now_us) {
+  const std::lock_guard lock(mutex_);
+  Query update(*database_, "UPDATE simulations SET epoch = max(epoch + 1, ?) WHERE id = ? RETURNING epoch");
+  update.bind(now_us, id);
+  const bool known = update.next();
+  const uint64_t epoch = known ? update.unsigned_integer(0) : 0;
+  if (auto done = update.run(); !done.ok()) return done;
+  return known ? absl::StatusOr<uint64_t>(epoch) : no_simulation(id);
+}
+
+absl::Status SqliteStore::check_unused(const std::string& first_model, const std::string& last_model) {
+  Query query(*database_,
+              "SELECT id, state, model FROM simulations WHERE model >= ? AND model < ? AND state < ? LIMIT 1");
+  query.bind(first_model, last_model, static_cast<int>(SimulationState::kSettled));
+  if (!query.next()) return query.status();
+  return absl::FailedPreconditionError(absl::StrCat(simulation_name(query.text(0)), " on ", query.text(2), " is ",
+                                                    state_name(static_cast<SimulationState>(query.integer(1))),
+                                                    "; stop or delete it first"));
 }
 
 }  // namespace lipofill::server

@@ -40,13 +40,35 @@ class SqliteStore : public Store {
                                                      const RequestKey& request) override;
   absl::StatusOr<SimulationRecord> get_simulation(const std::string& id) override;
   absl::StatusOr<std::vector<SimulationRecord>> list_simulations(const Page& page) override;
-  absl::Status update_simulation_spec(const std::string& id, const std::string& spec_message) override;
   absl::Status end_simulation(const SimulationRecord& ended, const SimulationResult& result) override;
+  absl::Status set_simulation_state(const std::string& id, SimulationState state, const std::string& reason) override;
   absl::Status append_series(const std::string& id, const SeriesChunk& chunk) override;
   absl::StatusOr<std::optional<SeriesChunk>> next_series_chunk(const std::string& id, uint64_t after_step) override;
   absl::StatusOr<SimulationResult> get_result(const std::string& id) override;
   absl::Status delete_simulation(const std::string& id) override;
-  absl::StatusOr<int> fail_unended_simulations(const std::string& reason) override;
+  absl::StatusOr<std::vector<SimulationRecord>> list_unended_simulations() override;
+  absl::StatusOr<uint64_t> begin_epoch(const std::string& id, int64_t now_us) override;
+
+  absl::StatusOr<bool> append_command(const CommandRecord& command, const std::string& spec_message,
+                                      const RequestKey& request) override;
+  absl::StatusOr<std::vector<CommandRecord>> list_commands(const std::string& simulation) override;
+
+  absl::StatusOr<CheckpointRecord> create_checkpoint(const CheckpointRecord& checkpoint,
+                                                     const std::optional<SeriesChunk>& rows,
+                                                     const RequestKey& request) override;
+  absl::StatusOr<CheckpointRecord> get_checkpoint(const std::string& simulation, const std::string& id) override;
+  absl::StatusOr<std::vector<CheckpointRecord>> list_checkpoints(const std::string& simulation,
+                                                                 const Page& page) override;
+  absl::Status delete_checkpoint(const std::string& simulation, const std::string& id) override;
+  absl::Status prune_checkpoints(const std::string& simulation, int keep) override;
+  absl::StatusOr<uint64_t> count_checkpoint_bytes() override;
+
+  absl::StatusOr<SimulationRecord> create_simulation_from(const SimulationRecord& simulation,
+                                                          const CheckpointRecord& origin,
+                                                          const RequestKey& request) override;
+  absl::StatusOr<bool> restore_simulation(const CommandRecord& restore, SimulationState state,
+                                          const std::string& spec_message, const RequestKey& request) override;
+  absl::Status cut_series(const std::string& id, uint64_t last_step) override;
 
   absl::StatusOr<std::optional<std::string>> find_request(const RequestKey& request) override;
 
@@ -58,6 +80,15 @@ class SqliteStore : public Store {
   absl::StatusOr<ScanRecord> read_scan(const std::string& patient, const std::string& id);
   absl::StatusOr<ModelRecord> read_model(const std::string& patient, const std::string& id);
   absl::StatusOr<SimulationRecord> read_simulation(const std::string& id);
+  absl::StatusOr<CheckpointRecord> read_checkpoint(const std::string& simulation, const std::string& id);
+  absl::Status write_simulation(const SimulationRecord& simulation);
+  absl::Status write_command(const CommandRecord& command);
+  absl::Status write_checkpoint(const CheckpointRecord& checkpoint);
+  absl::Status write_state(const std::string& simulation, SimulationState state, const std::string& spec_message);
+  absl::Status write_rows(const std::string& simulation, const SeriesChunk& rows);
+  absl::Status erase_rows(const std::string& simulation, uint64_t last_step);
+  /// OK unless a simulation that has not ended runs on a model in [first, last): FAILED_PRECONDITION naming it.
+  absl::Status check_unused(const std::string& first_model, const std::string& last_model);
   absl::Status write_labels(const PatientRecord& patient);
   absl::StatusOr<std::optional<std::string>> read_request(const RequestKey& request);
   absl::Status write_request(const RequestKey& request, const std::string& name);
@@ -73,5 +104,6 @@ std::string patient_name(const std::string& patient);
 std::string scan_name(const std::string& patient, const std::string& scan);
 std::string model_name(const std::string& patient, const std::string& model);
 std::string simulation_name(const std::string& simulation);
+std::string checkpoint_name(const std::string& simulation, const std::string& checkpoint);
 
 }  // namespace lipofill::server

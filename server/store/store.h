@@ -41,23 +41,61 @@ class Store {
   virtual absl::StatusOr<ModelRecord> create_model(const ModelRecord& model, const RequestKey& request) = 0;
   virtual absl::StatusOr<ModelRecord> get_model(const std::string& patient, const std::string& id) = 0;
   virtual absl::StatusOr<std::vector<ModelRecord>> list_models(const std::string& patient, const Page& page) = 0;
+  /// FAILED_PRECONDITION while a simulation that has not ended runs on it; so does deleting its patient.
   virtual absl::Status delete_model(const std::string& patient, const std::string& id) = 0;
 
   virtual absl::StatusOr<SimulationRecord> create_simulation(const SimulationRecord& simulation,
                                                              const RequestKey& request) = 0;
   virtual absl::StatusOr<SimulationRecord> get_simulation(const std::string& id) = 0;
   virtual absl::StatusOr<std::vector<SimulationRecord>> list_simulations(const Page& page) = 0;
-  virtual absl::Status update_simulation_spec(const std::string& id, const std::string& spec_message) = 0;
-  /// State, reason, summary and result in one go.
+  /// State, reason, summary and result in one go; automatic checkpoints go.
   virtual absl::Status end_simulation(const SimulationRecord& ended, const SimulationResult& result) = 0;
+  /// State and reason alone, without a result.
+  virtual absl::Status set_simulation_state(const std::string& id, SimulationState state,
+                                            const std::string& reason) = 0;
   virtual absl::Status append_series(const std::string& id, const SeriesChunk& chunk) = 0;
   /// The chunk that holds the first step after `after_step`; none when there is no later one.
   virtual absl::StatusOr<std::optional<SeriesChunk>> next_series_chunk(const std::string& id, uint64_t after_step) = 0;
   /// FAILED_PRECONDITION when it ended without one.
   virtual absl::StatusOr<SimulationResult> get_result(const std::string& id) = 0;
   virtual absl::Status delete_simulation(const std::string& id) = 0;
-  /// Marks every simulation that has not ended FAILED; for the start of a daemon. Returns how many there were.
-  virtual absl::StatusOr<int> fail_unended_simulations(const std::string& reason) = 0;
+  /// Those that have not ended, in order of their ids.
+  virtual absl::StatusOr<std::vector<SimulationRecord>> list_unended_simulations() = 0;
+  /// A number for a new stream of frames: `now_us`, or more, so that it is larger than any before.
+  virtual absl::StatusOr<uint64_t> begin_epoch(const std::string& id, int64_t now_us) = 0;
+
+  /// Keeps a command, the state it leads to and, where one is given, the plan it makes. False when an equal request
+  /// was kept before: nothing is changed then.
+  virtual absl::StatusOr<bool> append_command(const CommandRecord& command, const std::string& spec_message,
+                                              const RequestKey& request) = 0;
+  /// The commands on course, in order.
+  virtual absl::StatusOr<std::vector<CommandRecord>> list_commands(const std::string& simulation) = 0;
+
+  /// Records a checkpoint whose file is there, together with the rows of the series up to it. ALREADY_EXISTS for an id
+  /// in use.
+  virtual absl::StatusOr<CheckpointRecord> create_checkpoint(const CheckpointRecord& checkpoint,
+                                                             const std::optional<SeriesChunk>& rows,
+                                                             const RequestKey& request) = 0;
+  virtual absl::StatusOr<CheckpointRecord> get_checkpoint(const std::string& simulation, const std::string& id) = 0;
+  virtual absl::StatusOr<std::vector<CheckpointRecord>> list_checkpoints(const std::string& simulation,
+                                                                         const Page& page) = 0;
+  /// FAILED_PRECONDITION for the one that a simulation which has not ended began from.
+  virtual absl::Status delete_checkpoint(const std::string& simulation, const std::string& id) = 0;
+  /// Deletes automatic checkpoints except the newest `keep` on course.
+  virtual absl::Status prune_checkpoints(const std::string& simulation, int keep) = 0;
+  virtual absl::StatusOr<uint64_t> count_checkpoint_bytes() = 0;
+
+  /// A simulation that begins from a checkpoint of its own, whose file is there.
+  virtual absl::StatusOr<SimulationRecord> create_simulation_from(const SimulationRecord& simulation,
+                                                                  const CheckpointRecord& origin,
+                                                                  const RequestKey& request) = 0;
+  /// Takes a simulation back to a checkpoint on its course: what came after, commands, checkpoints and rows of the
+  /// series, leaves the course; `state` and `spec_message` are those it goes on with. False as in append_command;
+  /// FAILED_PRECONDITION for a checkpoint that is not on course.
+  virtual absl::StatusOr<bool> restore_simulation(const CommandRecord& restore, SimulationState state,
+                                                  const std::string& spec_message, const RequestKey& request) = 0;
+  /// Forgets rows of the series after a step.
+  virtual absl::Status cut_series(const std::string& id, uint64_t last_step) = 0;
 
   /// The name an earlier, equal request made, if any.
   virtual absl::StatusOr<std::optional<std::string>> find_request(const RequestKey& request) = 0;

@@ -78,6 +78,29 @@ TEST(Snapshot, RestoredStepEqualsTheStepWhereStepsGrowWhileInjecting) {
   }
 }
 
+TEST(Snapshot, InjectionsOfALiveRunAreInThePlanOfTheOneThatGoesOn) {
+  SimulationSpec spec = plan_with_everything(CouplingMode::kExact);
+  spec.max_injection_step = 0.1;
+  const auto original = make_small_simulation(spec);
+  const InjectionSpec more{"left", 0.05e-6, 1e-6, std::nullopt, std::nullopt};
+  for (int k = 0; k < kSteps; ++k) {
+    if (k % 7 == 3) {
+      const auto resolved = original->resolve(more);
+      ASSERT_TRUE(resolved.ok()) << resolved.status();
+      ASSERT_TRUE(original->inject(more).ok());
+      EXPECT_EQ(original->spec().injections.back().start, resolved->start);
+    }
+    const auto fresh = make_small_simulation(original->spec());
+    ASSERT_TRUE(fresh->restore(original->snapshot()).ok());
+    original->advance_step();
+    fresh->advance_step();
+    ASSERT_EQ(fresh->state_hash(), original->state_hash()) << "step " << k;
+  }
+  SimulationSpec full = spec;
+  full.injections.assign(1000, {"left", 1e-9, 1e-6, 0.0, std::nullopt});
+  EXPECT_EQ(make_small_simulation(full)->inject(more).code(), absl::StatusCode::kResourceExhausted);
+}
+
 TEST(Snapshot, RefusesWhatIsNotItsState) {
   const auto simulation = make_small_simulation();
   simulation->advance_step();

@@ -199,42 +199,6 @@ TEST_F(RunTest, DeletesARunningSimulation) {
   EXPECT_EQ(stop("simulations/x").error_code(), grpc::StatusCode::NOT_FOUND);
 }
 
-TEST_F(RunTest, SigtermKeepsWhatWasReached) {
-  create(1000.0, "running");
-  create(1000.0, "ready", false);
-  Watcher watcher(*channel_, watch_request("simulations/running", v1::WatchRequest::LATEST));
-  SeenFrame frame;
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(watcher.next(frame));
-  daemon_->signal(SIGTERM);
-  watcher.drain();
-  EXPECT_EQ(watcher.finish().error_code(), grpc::StatusCode::UNAVAILABLE);
-  EXPECT_EQ(daemon_->wait(), 0);
-  connect();
-  const v1::Simulation stopped = get_simulation("simulations/running");
-  EXPECT_EQ(stopped.state(), v1::Simulation::STOPPED);
-  EXPECT_EQ(stopped.reason(), "daemon stopped");
-  EXPECT_GE(stopped.summary().steps(), 2u);
-  EXPECT_EQ(series("simulations/running").rows_size(),
-            static_cast<int>(std::min<uint64_t>(stopped.summary().steps(), 10'000)));
-  SeenFrame last;
-  Watcher kept(*channel_, watch_request("simulations/running", v1::WatchRequest::LATEST));
-  EXPECT_EQ(kept.drain(&last), 1);
-  EXPECT_EQ(last.slice.sequence(), stopped.summary().steps());
-  EXPECT_EQ(get_simulation("simulations/ready").state(), v1::Simulation::STOPPED);
-}
-
-TEST_F(RunTest, AHardDeathIsTold) {
-  create(1000.0, "x");
-  restart_hard();
-  const v1::Simulation failed = get_simulation("simulations/x");
-  EXPECT_EQ(failed.state(), v1::Simulation::FAILED);
-  EXPECT_EQ(failed.reason(), "the daemon stopped");
-  Watcher watcher(*channel_, watch_request("simulations/x", v1::WatchRequest::LATEST));
-  SeenFrame frame;
-  EXPECT_FALSE(watcher.next(frame));
-  EXPECT_EQ(watcher.finish().error_code(), grpc::StatusCode::FAILED_PRECONDITION);
-}
-
 TEST_F(RunTest, RealTimeDoesNotRunAhead) {
   v1::SimulationSpec plan = square_plan(model_.name(), 0.5);
   plan.set_pace(v1::REAL_TIME);

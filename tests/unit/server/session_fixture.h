@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,18 +20,64 @@ namespace lipofill::server {
 /// Keeps in memory what a store would.
 class MemorySink : public SessionSink {
  public:
+  struct Kept {
+    CheckpointRecord record;
+    std::string snapshot;
+    size_t n_rows = 0;
+  };
+
+  absl::StatusOr<bool> was_kept(const RequestKey& request) override {
+    const std::lock_guard lock(mutex);
+    return requests.count(request.id) > 0;
+  }
+  absl::StatusOr<bool> keep_command(const CommandRecord& command, const RequestKey& request) override {
+    const std::lock_guard lock(mutex);
+    if (!room.ok()) return room;
+    if (requests.count(request.id) > 0) return false;
+    if (!request.id.empty()) requests.insert(request.id);
+    commands.push_back(command);
+    return true;
+  }
+  absl::StatusOr<bool> keep_injection(const CommandRecord& command, double start_s,
+                                      const RequestKey& request) override {
+    auto kept = keep_command(command, request);
+    if (kept.ok() && *kept) starts.push_back(start_s);
+    return kept;
+  }
+  absl::StatusOr<bool> keep_restore(const CommandRecord& command, SimulationState, const std::string&,
+                                    const RequestKey& request) override {
+    return keep_command(command, request);
+  }
+  absl::StatusOr<uint64_t> begin_epoch(const std::string&) override { return ++epoch; }
+  absl::StatusOr<CheckpointRecord> keep_checkpoint(const CheckpointRecord& draft, const std::string& snapshot,
+                                                   const std::vector<SeriesEntry>& rows, const RequestKey&) override {
+    const std::lock_guard lock(mutex);
+    if (!room.ok()) return room;
+    checkpoints.push_back({draft, snapshot, rows.size()});
+    for (const SeriesEntry& row : rows) steps.push_back(row.report.step);
+    return draft;
+  }
   absl::Status append_series(const std::string&, const std::vector<SeriesEntry>& rows) override {
     const std::lock_guard lock(mutex);
+    if (!room.ok()) return room;
     for (const SeriesEntry& row : rows) steps.push_back(row.report.step);
     return absl::OkStatus();
   }
   absl::Status ended(const std::string& id, const SessionView& view, const Topology&, const Frame& frame) override {
     const std::lock_guard lock(mutex);
+    if (!room.ok()) return room;
     views[id] = view;
     EXPECT_TRUE(frame.end);
     return absl::OkStatus();
   }
+
   std::mutex mutex;
+  absl::Status room;  ///< what keeping anything says
+  uint64_t epoch = 100;
+  std::set<std::string> requests;
+  std::vector<CommandRecord> commands;
+  std::vector<double> starts;
+  std::vector<Kept> checkpoints;
   std::vector<uint64_t> steps;
   std::map<std::string, SessionView> views;
 };
@@ -60,21 +107,28 @@ inline std::unique_ptr<simulation::Simulation> make_simulation(double end_s) {
 
 class SessionTest : public ::testing::Test {
  protected:
+  static SessionOptions options(const std::string& id, bool real_time = false) {
+    SessionOptions options;
+    options.id = id;
+    options.epoch = 7;
+    options.real_time = real_time;
+    return options;
+  }
   std::shared_ptr<Session> session(const std::string& id, double end_s, bool real_time = false) {
-    return std::make_shared<Session>(SessionOptions{id, 7, real_time}, make_simulation(end_s), workers_, sink_);
+    return std::make_shared<Session>(options(id, real_time), make_simulation(end_s), workers_, sink_);
   }
   /// Gives a command and waits for its answer.
-  template <typename Command>
-  absl::StatusOr<SessionView> ask(Command&& command) {
-    auto answer = std::make_shared<std::promise<absl::StatusOr<SessionView>>>();
-    command([answer](absl::StatusOr<SessionView> view) { answer->set_value(std::move(view)); });
+  template <typename Answer = SessionView, typename Command>
+  absl::StatusOr<Answer> ask(Command&& command) {
+    auto answer = std::make_shared<std::promise<absl::StatusOr<Answer>>>();
+    command([answer](absl::StatusOr<Answer> given) { answer->set_value(std::move(given)); });
     return answer->get_future().get();
   }
   absl::StatusOr<SessionView> start(Session& s) {
-    return ask([&s](auto reply) { s.start(reply); });
+    return ask([&s](auto reply) { s.start({}, reply); });
   }
   absl::StatusOr<SessionView> pause(Session& s) {
-    return ask([&s](auto reply) { s.pause(reply); });
+    return ask([&s](auto reply) { s.pause({}, reply); });
   }
   absl::StatusOr<SessionView> inspect(Session& s) {
     return ask([&s](auto reply) { s.inspect(reply); });

@@ -37,9 +37,9 @@ std::unique_ptr<simulation::Simulation> make_soft_simulation() {
 class PreviewTest : public SessionTest {
  protected:
   std::shared_ptr<Session> session(const std::string& id, bool preview) {
-    SessionOptions options{id, 7, false};
-    options.preview = preview;
-    return std::make_shared<Session>(options, make_soft_simulation(), workers_, sink_);
+    SessionOptions chosen = options(id);
+    chosen.preview = preview;
+    return std::make_shared<Session>(chosen, make_soft_simulation(), workers_, sink_);
   }
 };
 
@@ -48,9 +48,9 @@ TEST_F(PreviewTest, ShowsThePreviewFirstAndSaysHowFarItWas) {
   const auto s = session("a", true);
   EXPECT_FALSE(plain->cached_view().preview.has_value());
   EXPECT_EQ(s->cached_view().preview->state, PreviewState::kPending);
-  ViewerOptions options;
-  options.delivery = Delivery::kEvery;
-  const auto viewer = std::make_shared<Viewer>(options, [] {});
+  ViewerOptions every;
+  every.delivery = Delivery::kEvery;
+  const auto viewer = std::make_shared<Viewer>(every, [] {});
   s->watch(viewer);
   ASSERT_TRUE(start(*s).ok());
   ASSERT_TRUE(start(*plain).ok());
@@ -78,15 +78,15 @@ TEST_F(PreviewTest, ShowsThePreviewFirstAndSaysHowFarItWas) {
 
 TEST_F(PreviewTest, GoesOnWithoutAPreviewThatCannotBe) {
   // A zone between the centres of the coarse film's cells.
-  SessionOptions options{"a", 7, false};
-  options.preview = true;
+  SessionOptions chosen = options("a");
+  chosen.preview = true;
   auto simulation = make_soft_simulation();
   simulation::SimulationSpec spec = simulation->spec();
   spec.films[0].zones = {{"all", simulation::ChartBox{0.28, 0.34, 0.2, 0.8}}};
   spec.injections[0].volume = 2e-8;
   auto narrow = simulation::Simulation::create(simulation->shared_model(), spec);
   ASSERT_TRUE(narrow.ok()) << narrow.status();
-  const auto s = std::make_shared<Session>(options, *std::move(narrow), workers_, sink_);
+  const auto s = std::make_shared<Session>(chosen, *std::move(narrow), workers_, sink_);
   ASSERT_TRUE(start(*s).ok());
   await_end(*s);
   const auto view = inspect(*s);
@@ -100,7 +100,9 @@ TEST_F(PreviewTest, AnInjectionAfterThePreviewMakesItOutdated) {
   const auto s = session("a", true);
   ASSERT_TRUE(start(*s).ok());
   while (s->cached_view().report.step < 3) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  const auto injected = ask([&](auto reply) { s->inject({"all", 0.5e-7, 1e-6, std::nullopt, std::nullopt}, reply); });
+  const auto injected = ask([&](auto reply) {
+    s->inject({{"all", 0.5e-7, 1e-6, std::nullopt, std::nullopt}, ""}, {}, reply);
+  });
   ASSERT_TRUE(injected.ok()) << injected.status();
   EXPECT_EQ(injected->preview->state, PreviewState::kOutdated);
   const auto late = std::make_shared<Viewer>(ViewerOptions(), [] {});
@@ -118,7 +120,7 @@ TEST_F(PreviewTest, StopsWithinAStepOfThePreview) {
   ASSERT_TRUE(start(*s).ok());
   const auto paused = pause(*s);
   ASSERT_TRUE(paused.ok());
-  const auto stopped = ask([&](auto reply) { s->stop("enough", reply); });
+  const auto stopped = ask([&](auto reply) { s->stop("enough", {}, reply); });
   ASSERT_TRUE(stopped.ok());
   if (stopped->report.step == 0) {
     EXPECT_EQ(stopped->preview->state, PreviewState::kFailed);

@@ -35,7 +35,7 @@ TEST_F(SessionTest, GivesTheSameHashBesideOthersPausedOrNot) {
   for (int i = 0; i < 6; ++i) all.push_back(session(std::to_string(i), 5.0));
   for (const auto& s : all) ASSERT_TRUE(start(*s).ok());
   if (pause(*all[0]).ok()) {
-    ASSERT_TRUE(ask([&](auto reply) { all[0]->resume(reply); }).ok());
+    ASSERT_TRUE(ask([&](auto reply) { all[0]->resume({}, reply); }).ok());
   }
   for (const auto& s : all) await_end(*s);
   const std::string hash = inspect(*all[0])->state_hash;
@@ -52,7 +52,7 @@ TEST_F(SessionTest, NamesTheStateThatDoesNotFit) {
   const auto paused = pause(*s);
   ASSERT_TRUE(paused.ok());
   EXPECT_EQ(inspect(*s)->report.step, paused->report.step);
-  const auto stopped = ask([&](auto reply) { s->stop("enough", reply); });
+  const auto stopped = ask([&](auto reply) { s->stop("enough", {}, reply); });
   ASSERT_TRUE(stopped.ok());
   EXPECT_EQ(stopped->state, SimulationState::kStopped);
   EXPECT_EQ(stopped->reason, "enough");
@@ -70,7 +70,7 @@ TEST_F(SessionTest, AnswersManyCommandsFromManyThreads) {
     });
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_TRUE(ask([&](auto reply) { s->stop("", reply); }).ok());
+  EXPECT_TRUE(ask([&](auto reply) { s->stop("", {}, reply); }).ok());
 }
 
 TEST_F(SessionTest, ShowsFramesUntilTheEndAndAfterIt) {
@@ -103,7 +103,7 @@ TEST_F(SessionTest, StopsWhileItWaitsForRealTime) {
   const auto s = session("a", 1e6, true);
   ASSERT_TRUE(start(*s).ok());
   std::this_thread::sleep_for(std::chrono::milliseconds(30));
-  const auto stopped = ask([&](auto reply) { s->stop("", reply); });
+  const auto stopped = ask([&](auto reply) { s->stop("", {}, reply); });
   ASSERT_TRUE(stopped.ok());
   EXPECT_LE(stopped->report.time, stopped->wall_s + 0.011);
 }
@@ -125,10 +125,18 @@ TEST_F(SessionTest, TheManagerBoundsAndStopsAll) {
   const auto a = manager.find("a");
   const auto viewer = std::make_shared<Viewer>(ViewerOptions{}, [] {});
   a->watch(viewer);
-  manager.stop_all("daemon stopped");
-  EXPECT_EQ(a->cached_view().state, SimulationState::kStopped);
-  EXPECT_EQ(a->cached_view().reason, "daemon stopped");
+  while (a->cached_view().report.step == 0) std::this_thread::yield();
+  ASSERT_TRUE(manager.checkpoint_all().ok());
+  ASSERT_EQ(sink_.checkpoints.size(), 1u);
+  EXPECT_FALSE(viewer->closed());
+  manager.suspend_all("the daemon stopped");
   EXPECT_TRUE(viewer->closed());
+  EXPECT_EQ(a->cached_view().state, SimulationState::kRunning) << "it is to go on";
+  const uint64_t step = inspect(*a)->report.step;
+  EXPECT_EQ(sink_.checkpoints.back().record.step, step);
+  EXPECT_TRUE(absl::IsUnavailable(pause(*a).status()));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(inspect(*a)->report.step, step);
   EXPECT_TRUE(absl::IsUnavailable(manager.reserve().status()));
 }
 

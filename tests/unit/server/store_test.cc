@@ -129,7 +129,7 @@ TEST_F(StoreTest, FollowsAnUpload) {
 TEST_F(StoreTest, HoldsOnToAScanThatAModelWasBuiltFrom) {
   add_patient("anna");
   ASSERT_TRUE(store_->create_scan(scan("s1"), {}).ok());
-  ASSERT_TRUE(store_->create_model({"anna", "m1", "s1", "hash", "spec", "report", 1}, {}).ok());
+  ASSERT_TRUE(store_->create_model({"anna", "m1", "s1", "hash", "spec", "report", 1, ""}, {}).ok());
   EXPECT_TRUE(absl::IsFailedPrecondition(store_->delete_scan("anna", "s1")));
   const absl::Status refused = store_->delete_patient("anna", false);
   EXPECT_TRUE(absl::IsFailedPrecondition(refused));
@@ -152,28 +152,9 @@ TEST_F(StoreTest, HoldsOnToTheBoneOfAModelToo) {
   EXPECT_TRUE(store_->delete_scan("anna", "b1").ok());
 }
 
-TEST_F(StoreTest, ADatabaseOfTheFirstVersionIsBroughtUpToDate) {
-  add_patient("anna");
-  ASSERT_TRUE(store_->create_scan(scan("s1"), {}).ok());
-  ASSERT_TRUE(store_->create_model({"anna", "m1", "s1", "hash", "spec", "report", 1}, {}).ok());
-  store_ = nullptr;
-  {
-    const auto database = Database::open(directory_.file("db"));
-    ASSERT_TRUE(database.ok());
-    ASSERT_TRUE((*database)->execute("ALTER TABLE models DROP COLUMN bone_scan; PRAGMA user_version = 1").ok());
-  }
-  reopen();
-  const auto model = store_->get_model("anna", "m1");
-  ASSERT_TRUE(model.ok()) << model.status();
-  EXPECT_EQ(model->content_hash, "hash");
-  EXPECT_EQ(model->bone_scan, "");
-  reopen();
-  EXPECT_TRUE(store_->get_model("anna", "m1").ok());
-}
-
 TEST_F(StoreTest, RefusesAModelOfAScanThatIsGone) {
   add_patient("anna");
-  EXPECT_TRUE(absl::IsNotFound(store_->create_model({"anna", "m1", "s1", "h", "", "", 1}, {}).status()));
+  EXPECT_TRUE(absl::IsNotFound(store_->create_model({"anna", "m1", "s1", "h", "", "", 1, ""}, {}).status()));
   EXPECT_TRUE(store_->list_models("anna", {"", 10})->empty());
 }
 
@@ -206,15 +187,32 @@ TEST_F(StoreTest, FindsSeriesByStep) {
   EXPECT_FALSE(store_->next_series_chunk("x", 0)->has_value());
 }
 
-TEST_F(StoreTest, FailsWhatWasUnderWay) {
+TEST_F(StoreTest, ListsWhatHasNotEnded) {
   for (const char* id : {"ready", "ended"}) ASSERT_TRUE(store_->create_simulation(simulation(id), {}).ok());
   SimulationRecord ended = simulation("ended");
   ended.state = SimulationState::kStopped;
   ASSERT_TRUE(store_->end_simulation(ended, {}).ok());
-  EXPECT_EQ(*store_->fail_unended_simulations("the daemon stopped"), 1);
-  EXPECT_EQ(store_->get_simulation("ready")->state, SimulationState::kFailed);
-  EXPECT_EQ(store_->get_simulation("ready")->reason, "the daemon stopped");
-  EXPECT_EQ(store_->get_simulation("ended")->state, SimulationState::kStopped);
+  const auto unended = store_->list_unended_simulations();
+  ASSERT_TRUE(unended.ok());
+  ASSERT_EQ(unended->size(), 1u);
+  EXPECT_EQ(unended->front().id, "ready");
+  EXPECT_EQ(unended->front().spec_message, simulation("ready").spec_message);
+}
+
+TEST_F(StoreTest, HoldsOnToTheModelOfASimulationThatHasNotEnded) {
+  add_patient("anna");
+  ASSERT_TRUE(store_->create_model({"anna", "m", "", "hash", "spec", "report", 1, ""}, {}).ok());
+  ASSERT_TRUE(store_->create_model({"anna", "m2", "", "hash", "spec", "report", 1, ""}, {}).ok());
+  ASSERT_TRUE(store_->create_simulation(simulation("x"), {}).ok());
+  const absl::Status refused = store_->delete_model("anna", "m");
+  EXPECT_TRUE(absl::IsFailedPrecondition(refused));
+  EXPECT_THAT(std::string(refused.message()), HasSubstr("simulations/x"));
+  EXPECT_TRUE(absl::IsFailedPrecondition(store_->delete_patient("anna", true)));
+  EXPECT_TRUE(store_->delete_model("anna", "m2").ok());
+  SimulationRecord ended = simulation("x");
+  ended.state = SimulationState::kStopped;
+  ASSERT_TRUE(store_->end_simulation(ended, {}).ok());
+  EXPECT_TRUE(store_->delete_patient("anna", true).ok());
 }
 
 TEST_F(StoreTest, ServesManyThreads) {

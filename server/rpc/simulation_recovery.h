@@ -1,0 +1,13 @@
+#pragma once
+
+#include "server/rpc/backend.h"
+
+namespace lipofill::server {
+
+/// Brings the simulations back that had not ended when the daemon did: each from its newest checkpoint that can be
+/// used, or from its start, repeating the commands that were acknowledged after it. Those that ran go on. One that
+/// cannot be brought back says why; the others do not suffer from it. Returns when all are there; models are built
+/// again on as many threads as there are workers.
+absl::Status bring_back_simulations(Backend& backend);
+
+}  // namespace lipofill::server

@@ -1,0 +1,147 @@
+// How a session keeps its state, goes back to one, and goes on after the daemon was started again.
+
+#include <algorithm>
+#include <exception>
+
+#include "absl/strings/str_cat.h"
+#include "server/sessions/identifiers.h"
+#include "server/sessions/session.h"
+#include "spdlog/spdlog.h"
+
+namespace lipofill::server {
+namespace {
+
+/// Automatic checkpoints are so far apart that they cost less than a hundredth of the run.
+constexpr int kLeastSpacing = 100;
+
+}  // namespace
+
+// ---- keeping
+
+absl::StatusOr<CheckpointRecord> Session::keep_checkpoint(CheckpointKind kind, const std::string& id,
+                                                          const RequestKey& request) {
+  const SessionView view = full_view();
+  CheckpointRecord draft;
+  draft.simulation = options_.id;
+  draft.id = id;
+  draft.kind = kind;
+  draft.step = view.report.step;
+  draft.time_s = view.report.time;
+  draft.wall_s = view.wall_s;
+  draft.state_hash = view.state_hash;
+  draft.create_time_us = now_us();
+  const std::vector<SeriesEntry> rows = pending_series(0);
+  auto kept = sink_.keep_checkpoint(draft, simulation_->snapshot(), rows, request);
+  if (!kept.ok()) return kept;
+  forget_pending(rows.size());
+  saved_step_ = draft.step;
+  return kept;
+}
+
+void Session::checkpoint_when_due() {
+  if (view_.state != SimulationState::kRunning || catching_up_ || options_.checkpoint_interval_s <= 0.0) return;
+  if (Clock::now() >= checkpoint_due_) checkpoint_automatically();
+}
+
+void Session::checkpoint_automatically() {
+  const Clock::time_point begin = Clock::now();
+  const absl::Status kept =
+      guarded([this] { return keep_checkpoint(CheckpointKind::kAutomatic, make_id('a'), {}).status(); });
+  const auto interval = std::chrono::duration<double>(options_.checkpoint_interval_s);
+  const Clock::time_point end = Clock::now();
+  checkpoint_due_ =
+      end + std::max(std::chrono::duration_cast<Clock::duration>(interval), kLeastSpacing * (end - begin));
+  if (kept.ok()) return set_reason(history_.note);
+  spdlog::error("simulations/{}: no checkpoint at step {}: {}", options_.id, view_.report.step, kept.ToString());
+  set_reason(absl::StrCat(saved_step_ ? absl::StrCat("the last checkpoint is of step ", *saved_step_) : "no checkpoint",
+                          ": ", std::string(kept.message())));
+}
+
+absl::Status Session::save_now() {
+  if (simulation_ == nullptr || catching_up_) return absl::OkStatus();
+  const uint64_t step = simulation_->report().step;
+  if (step == 0 || saved_step_ == step) return absl::OkStatus();
+  return guarded([this] { return keep_checkpoint(CheckpointKind::kAutomatic, make_id('a'), {}).status(); });
+}
+
+void Session::save(Done done) {
+  post([this, done] { done(save_now()); });
+}
+
+void Session::suspend(Done done) {
+  post([this, done] {
+    suspended_ = true;
+    for (const Command& waiting : std::exchange(held_, {})) waiting();
+    const absl::Status saved = save_now();
+    if (!saved.ok()) spdlog::error("simulations/{}: its state is not kept: {}", options_.id, saved.ToString());
+    done(saved);
+  });
+}
+
+// ---- going back
+
+absl::Status Session::go_back(RestoreOrder& order, const RequestKey& request) {
+  const CheckpointRecord& checkpoint = order.checkpoint;
+  const CommandRecord command{options_.id, 0, CommandKind::kRestore, checkpoint.step, checkpoint.id, now_us()};
+  const auto kept = sink_.keep_restore(command, view_.state, order.spec_message, request);
+  if (!kept.ok() || !*kept) return kept.status();
+  simulation_ = std::move(order.simulation);
+  forget_pending(pending_series(0).size());
+  saved_step_ = checkpoint.step;
+  wall_before_s_ = checkpoint.wall_s;
+  running_since_ = Clock::now();
+  running_since_time_s_ = simulation_->report().time;
+  update_view();
+  const auto epoch = sink_.begin_epoch(options_.id);
+  epoch_ = epoch.ok() ? *epoch : epoch_ + 1;
+  note_changed_plan("the simulation went back to a checkpoint after it");
+  show_again_from_here();
+  spdlog::info("simulations/{} goes on from step {}, checkpoint {}", options_.id, checkpoint.step, checkpoint.id);
+  return absl::OkStatus();
+}
+
+// ---- catching up
+
+void Session::go_on() {
+  post([this] {
+    set_reason(catching_up_ ? catching_up_text() : history_.note);
+    running_since_ = Clock::now();
+    running_since_time_s_ = simulation_->report().time;
+    if (takes_steps() || catching_up_) schedule();
+  });
+}
+
+std::string Session::catching_up_text() const {
+  return absl::StrCat("catching up to step ", history_.until_step, " after the daemon was started again",
+                      history_.note.empty() ? "" : "; ", history_.note);
+}
+
+/// Repeats what took effect after the step it is at.
+void Session::catch_up() {
+  const uint64_t step = simulation_->report().step;
+  auto& injections = history_.injections;
+  for (; !injections.empty() && injections.front().step <= step; injections.pop_front()) {
+    const absl::Status done = injections.front().step == step
+                                  ? simulation_->inject(injections.front().spec)
+                                  : absl::DataLossError(absl::StrCat("it is of step ", injections.front().step));
+    if (!done.ok()) {
+      return finish(SimulationState::kFailed, absl::StrCat("an injection that was acknowledged cannot be repeated at "
+                                                           "step ",
+                                                           step, ": ", std::string(done.message())));
+    }
+  }
+  if (!injections.empty() || step < history_.until_step) return;
+  if (history_.stop_reason.has_value()) return finish(SimulationState::kStopped, *history_.stop_reason);
+  leave_running();
+  running_since_ = Clock::now();
+  running_since_time_s_ = simulation_->report().time;
+  set_reason(history_.note);
+  end_catching_up();
+}
+
+void Session::end_catching_up() {
+  catching_up_ = false;
+  for (Command& waiting : std::exchange(held_, {})) queue(std::move(waiting));
+}
+
+}  // namespace lipofill::server

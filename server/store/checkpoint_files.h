@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+namespace lipofill::server {
+
+/// What a checkpoint's file holds: all that a simulation goes on from, given its model.
+struct CheckpointContent {
+  std::string simulation;    ///< id
+  uint64_t step = 0;         ///< of the state
+  std::string spec_message;  ///< the plan with the injections taken by then
+  std::string snapshot;      ///< simulation::Simulation::snapshot()
+};
+
+/// Largest file that is written or read.
+inline constexpr uint64_t kMaxCheckpointBytes = uint64_t{1} << 30;
+
+/// A checkpoint as the bytes of its file, little-endian:
+///
+///     "LIPOCKPT"  u32 version = 1  u32 0  u64 size of the body  SHA-256 of the body, 32 bytes
+///     body: u64 step, then simulation, spec_message and snapshot, each a u64 length and its bytes
+std::string encode_checkpoint(const CheckpointContent& content);
+/// DATA_LOSS saying what does not fit; no length is believed beyond the bytes that are there.
+/// Checked by tests/unit/server/checkpoint_files_test.cc with every bit flipped and every length cut.
+absl::StatusOr<CheckpointContent> decode_checkpoint(std::string_view bytes);
+
+/// The SHA-256 that the file's header says its body has, in hex; empty when there is no header.
+std::string sha256_of_checkpoint(std::string_view bytes);
+
+/// The files of checkpoints: <root>/<simulation>/<checkpoint>. Ids are checked by whoever calls: they hold no
+/// separators. Checked by tests/unit/server/checkpoint_files_test.cc.
+class CheckpointFiles {
+ public:
+  static absl::StatusOr<CheckpointFiles> open(const std::filesystem::path& root);
+
+  struct Written {
+    uint64_t size_bytes = 0;
+    std::string sha256;  ///< of the file's body
+  };
+  /// Whole and on the medium, or not at all. RESOURCE_EXHAUSTED when there is no room or it is too large.
+  absl::StatusOr<Written> write(const std::string& simulation, const std::string& checkpoint,
+                                const CheckpointContent& content) const;
+  /// DATA_LOSS unless the file is the one that was written: its hash, its simulation.
+  absl::StatusOr<CheckpointContent> read(const std::string& simulation, const std::string& checkpoint,
+                                         const std::string& sha256) const;
+  void remove(const std::string& simulation, const std::string& checkpoint) const;
+  void remove_simulation(const std::string& simulation) const;
+
+  using Known = std::function<bool(const std::string& simulation, const std::string& checkpoint)>;
+  /// Removes files nobody knows: what a crash between two steps left. Returns how many.
+  int sweep(const Known& known) const;
+  /// The same for the files of one simulation.
+  int sweep_simulation(const std::string& simulation, const Known& known) const;
+
+ private:
+  explicit CheckpointFiles(std::filesystem::path root) : root_(std::move(root)) {}
+  std::filesystem::path root_;
+};
+
+}  // namespace lipofill::server

@@ -1,0 +1,125 @@
+#include "server/store/schema.h"
+
+#include <cstdint>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
+
+namespace lipofill::server {
+namespace {
+
+constexpr int kApplicationId = 0x4c69706f;  // "Lipo"
+
+/// Ids are compared as bytes; requests hold the full name of what they made. Columns stand in the order in which the
+/// changes below bring them.
+constexpr char kSchema[] = R"(
+CREATE TABLE patients (
+  id BLOB PRIMARY KEY, display_name BLOB NOT NULL, create_time_us INTEGER NOT NULL) WITHOUT ROWID;
+CREATE TABLE patient_labels (
+  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, key BLOB NOT NULL, value BLOB NOT NULL,
+  PRIMARY KEY (patient, key)) WITHOUT ROWID;
+CREATE TABLE scans (
+  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, format INTEGER NOT NULL,
+  unit INTEGER NOT NULL, size_bytes INTEGER NOT NULL, sha256 BLOB NOT NULL, received_bytes INTEGER NOT NULL,
+  complete INTEGER NOT NULL, report BLOB NOT NULL, create_time_us INTEGER NOT NULL, PRIMARY KEY (patient, id));
+CREATE TABLE models (
+  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, scan BLOB NOT NULL,
+  content_hash BLOB NOT NULL, spec BLOB NOT NULL, report BLOB NOT NULL, create_time_us INTEGER NOT NULL,
+  bone_scan BLOB NOT NULL DEFAULT x'', PRIMARY KEY (patient, id));
+CREATE TABLE simulations (
+  id BLOB PRIMARY KEY, model BLOB NOT NULL, display_name BLOB NOT NULL, spec BLOB NOT NULL, state INTEGER NOT NULL,
+  reason BLOB NOT NULL, summary BLOB NOT NULL, create_time_us INTEGER NOT NULL, epoch INTEGER NOT NULL DEFAULT 0,
+  origin BLOB NOT NULL DEFAULT x'');
+CREATE TABLE simulation_results (
+  simulation BLOB PRIMARY KEY REFERENCES simulations(id) ON DELETE CASCADE, meshes BLOB NOT NULL, frame BLOB NOT NULL);
+CREATE TABLE simulation_series (
+  simulation BLOB NOT NULL REFERENCES simulations(id) ON DELETE CASCADE, first_step INTEGER NOT NULL,
+  last_step INTEGER NOT NULL, rows BLOB NOT NULL, PRIMARY KEY (simulation, last_step));
+CREATE TABLE requests (
+  method BLOB NOT NULL, id BLOB NOT NULL, fingerprint BLOB NOT NULL, name BLOB NOT NULL,
+  PRIMARY KEY (method, id)) WITHOUT ROWID;
+CREATE INDEX requests_by_name ON requests(name);
+)";
+
+constexpr char kResumeTables[] = R"(
+CREATE TABLE simulation_commands (
+  simulation BLOB NOT NULL REFERENCES simulations(id) ON DELETE CASCADE, number INTEGER NOT NULL,
+  kind INTEGER NOT NULL, step INTEGER NOT NULL, payload BLOB NOT NULL, on_course INTEGER NOT NULL,
+  create_time_us INTEGER NOT NULL, PRIMARY KEY (simulation, number)) WITHOUT ROWID;
+CREATE TABLE checkpoints (
+  simulation BLOB NOT NULL REFERENCES simulations(id) ON DELETE CASCADE, id BLOB NOT NULL, kind INTEGER NOT NULL,
+  on_course INTEGER NOT NULL, step INTEGER NOT NULL, time_s REAL NOT NULL, wall_s REAL NOT NULL,
+  last_command INTEGER NOT NULL, size_bytes INTEGER NOT NULL, sha256 BLOB NOT NULL, state_hash BLOB NOT NULL,
+  create_time_us INTEGER NOT NULL, PRIMARY KEY (simulation, id));
+)";
+
+/// 2: the bone under a face.
+constexpr char kFromVersion1[] = "ALTER TABLE models ADD COLUMN bone_scan BLOB NOT NULL DEFAULT x'';";
+
+/// 3: commands are logged and simulations have checkpoints, in kResumeTables. What was under way under version 2 was
+/// lost with its daemon.
+constexpr char kFromVersion2[] = R"(
+ALTER TABLE simulations ADD COLUMN epoch INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE simulations ADD COLUMN origin BLOB NOT NULL DEFAULT x'';
+UPDATE simulations SET state = 7, reason = CAST('the daemon stopped' AS BLOB) WHERE state < 4;
+)";
+
+absl::StatusOr<int64_t> read_pragma(Database& database, const char* sql) {
+  Query query(database, sql);
+  const int64_t value = query.next() ? query.integer(0) : 0;
+  if (!query.status().ok()) return query.status();
+  return value;
+}
+
+/// Carries out the statements and marks the database as of this version, or does neither.
+absl::Status change_schema(Database& database, const std::string& statements) {
+  Transaction transaction(database);
+  if (!transaction.status().ok()) return transaction.status();
+  if (auto made = database.execute(statements.c_str()); !made.ok()) return made;
+  const std::string marks =
+      absl::StrCat("PRAGMA application_id = ", kApplicationId, "; PRAGMA user_version = ", kSchemaVersion);
+  if (auto marked = database.execute(marks.c_str()); !marked.ok()) return marked;
+  return transaction.commit();
+}
+
+absl::Status damaged(const std::string& path, const std::string& what) {
+  return absl::DataLossError(
+      absl::StrCat(path, " is damaged: ", what,
+                   ". Put a backup in its place; or take out what can be read with sqlite3's .recover into a new file "
+                   "and put that in its place; or move it away to begin with an empty store"));
+}
+
+}  // namespace
+
+absl::Status check_database(Database& database, const std::string& path) {
+  Query check(database, "PRAGMA quick_check(1)");
+  const std::string found = check.next() ? check.text(0) : "";
+  if (absl::IsDataLoss(check.status())) return damaged(path, std::string(check.status().message()));
+  if (!check.status().ok()) {
+    return absl::Status(check.status().code(), absl::StrCat(path, ": ", check.status().message()));
+  }
+  return found == "ok" ? absl::OkStatus() : damaged(path, found);
+}
+
+absl::Status bring_up_to_date(Database& database, const std::string& path) {
+  const auto version = read_pragma(database, "PRAGMA user_version");
+  if (!version.ok()) return version.status();
+  const auto tables = read_pragma(database, "SELECT count(*) FROM sqlite_master");
+  if (!tables.ok()) return tables.status();
+  if (*version == 0 && *tables == 0) return change_schema(database, absl::StrCat(kSchema, kResumeTables));
+  const auto application = read_pragma(database, "PRAGMA application_id");
+  if (!application.ok()) return application.status();
+  if (*application != kApplicationId) {
+    return absl::FailedPreconditionError(absl::StrCat(path, " is a database of another program"));
+  }
+  if (*version < 1 || *version > kSchemaVersion) {
+    return absl::FailedPreconditionError(
+        absl::StrCat(path, " has schema version ", *version, ", this program knows 1 to ", kSchemaVersion));
+  }
+  std::string changes;
+  if (*version < 2) changes += kFromVersion1;
+  if (*version < 3) absl::StrAppend(&changes, kFromVersion2, kResumeTables);
+  return changes.empty() ? absl::OkStatus() : change_schema(database, changes);
+}
+
+}  // namespace lipofill::server

@@ -1,0 +1,102 @@
+#include <optional>
+
+#include "absl/strings/str_cat.h"
+#include "server/store/sqlite_store.h"
+
+namespace lipofill::server {
+namespace {
+
+/// The state that a command leads to, where it sets one. STOPPED is not among them: a simulation has ended once its
+/// result is kept.
+std::optional<SimulationState> state_after(CommandKind kind) {
+  if (kind == CommandKind::kStart || kind == CommandKind::kResume) return SimulationState::kRunning;
+  if (kind == CommandKind::kPause) return SimulationState::kPaused;
+  return std::nullopt;
+}
+
+}  // namespace
+
+absl::StatusOr<bool> SqliteStore::append_command(const CommandRecord& command, const std::string& spec_message,
+                                                 const RequestKey& request) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  const auto made = read_request(request);
+  if (!made.ok()) return made.status();
+  if (made->has_value()) return false;
+  const auto simulation = read_simulation(command.simulation);
+  if (!simulation.ok()) return simulation.status();
+  absl::Status done = write_command(command);
+  done.Update(write_state(command.simulation, state_after(command.kind).value_or(simulation->state),
+                          spec_message.empty() ? simulation->spec_message : spec_message));
+  done.Update(write_request(request, simulation_name(command.simulation)));
+  if (done.ok()) done.Update(transaction.commit());
+  if (!done.ok()) return done;
+  return true;
+}
+
+absl::Status SqliteStore::write_command(const CommandRecord& command) {
+  Query insert(*database_,
+               "INSERT INTO simulation_commands SELECT ?1, coalesce(max(number), 0) + 1, ?2, ?3, ?4, 1, ?5 "
+               "FROM simulation_commands WHERE simulation = ?1");
+  return insert
+      .bind(command.simulation, static_cast<int>(command.kind), command.step, command.payload, command.create_time_us)
+      .run();
+}
+
+absl::Status SqliteStore::write_state(const std::string& simulation, SimulationState state,
+                                      const std::string& spec_message) {
+  Query update(*database_, "UPDATE simulations SET state = ?, spec = ? WHERE id = ?");
+  return update.bind(static_cast<int>(state), spec_message, simulation).run();
+}
+
+absl::StatusOr<std::vector<CommandRecord>> SqliteStore::list_commands(const std::string& simulation) {
+  const std::lock_guard lock(mutex_);
+  Query query(*database_,
+              "SELECT number, kind, step, payload, create_time_us FROM simulation_commands "
+              "WHERE simulation = ? AND on_course ORDER BY number");
+  query.bind(simulation);
+  std::vector<CommandRecord> commands;
+  while (query.next()) {
+    commands.push_back({simulation, query.unsigned_integer(0), static_cast<CommandKind>(query.integer(1)),
+                        query.unsigned_integer(2), query.text(3), query.integer(4)});
+  }
+  if (!query.status().ok()) return query.status();
+  return commands;
+}
+
+absl::StatusOr<bool> SqliteStore::restore_simulation(const CommandRecord& restore, SimulationState state,
+                                                     const std::string& spec_message, const RequestKey& request) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  const auto made = read_request(request);
+  if (!made.ok()) return made.status();
+  if (made->has_value()) return false;
+  const std::string& id = restore.simulation;
+  const auto checkpoint = read_checkpoint(id, restore.payload);
+  if (!checkpoint.ok()) return checkpoint.status();
+  if (!checkpoint->on_course) {
+    return absl::FailedPreconditionError(absl::StrCat(checkpoint_name(id, restore.payload), " lies on a course that ",
+                                                      simulation_name(id),
+                                                      " has left; a new simulation can begin from it"));
+  }
+  Query commands(*database_, "UPDATE simulation_commands SET on_course = 0 WHERE simulation = ? AND number > ?");
+  absl::Status done = commands.bind(id, checkpoint->last_command).run();
+  Query later(*database_,
+              "UPDATE checkpoints SET on_course = 0 WHERE simulation = ? AND (step > ? OR last_command > ?)");
+  done.Update(later.bind(id, checkpoint->step, checkpoint->last_command).run());
+  done.Update(erase_rows(id, checkpoint->step));
+  done.Update(write_command(restore));
+  if (state != SimulationState::kReady) {
+    const CommandKind goes_on = state == SimulationState::kRunning ? CommandKind::kResume : CommandKind::kPause;
+    done.Update(write_command({id, 0, goes_on, restore.step, "", restore.create_time_us}));
+  }
+  done.Update(write_state(id, state, spec_message));
+  done.Update(write_request(request, simulation_name(id)));
+  if (done.ok()) done.Update(transaction.commit());
+  if (!done.ok()) return done;
+  return true;
+}
+
+}  // namespace lipofill::server

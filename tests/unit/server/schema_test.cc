@@ -1,0 +1,178 @@
+// Databases of every earlier version, made from the schema text of that version, and damaged ones.
+
+#include "server/store/schema.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "absl/strings/str_cat.h"
+#include "server/store/sqlite_store.h"
+#include "tests/unit/server/temporary_directory.h"
+
+namespace lipofill::server {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// As version 1 wrote it.
+constexpr char kVersion1[] = R"(
+CREATE TABLE patients (
+  id BLOB PRIMARY KEY, display_name BLOB NOT NULL, create_time_us INTEGER NOT NULL) WITHOUT ROWID;
+CREATE TABLE patient_labels (
+  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, key BLOB NOT NULL, value BLOB NOT NULL,
+  PRIMARY KEY (patient, key)) WITHOUT ROWID;
+CREATE TABLE scans (
+  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, format INTEGER NOT NULL,
+  unit INTEGER NOT NULL, size_bytes INTEGER NOT NULL, sha256 BLOB NOT NULL, received_bytes INTEGER NOT NULL,
+  complete INTEGER NOT NULL, report BLOB NOT NULL, create_time_us INTEGER NOT NULL, PRIMARY KEY (patient, id));
+CREATE TABLE models (
+  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, scan BLOB NOT NULL,
+  content_hash BLOB NOT NULL, spec BLOB NOT NULL, report BLOB NOT NULL, create_time_us INTEGER NOT NULL,
+  PRIMARY KEY (patient, id));
+CREATE TABLE simulations (
+  id BLOB PRIMARY KEY, model BLOB NOT NULL, display_name BLOB NOT NULL, spec BLOB NOT NULL, state INTEGER NOT NULL,
+  reason BLOB NOT NULL, summary BLOB NOT NULL, create_time_us INTEGER NOT NULL);
+CREATE TABLE simulation_results (
+  simulation BLOB PRIMARY KEY REFERENCES simulations(id) ON DELETE CASCADE, meshes BLOB NOT NULL, frame BLOB NOT NULL);
+CREATE TABLE simulation_series (
+  simulation BLOB NOT NULL REFERENCES simulations(id) ON DELETE CASCADE, first_step INTEGER NOT NULL,
+  last_step INTEGER NOT NULL, rows BLOB NOT NULL, PRIMARY KEY (simulation, last_step));
+CREATE TABLE requests (
+  method BLOB NOT NULL, id BLOB NOT NULL, fingerprint BLOB NOT NULL, name BLOB NOT NULL,
+  PRIMARY KEY (method, id)) WITHOUT ROWID;
+CREATE INDEX requests_by_name ON requests(name);
+PRAGMA application_id = 0x4c69706f;
+PRAGMA user_version = 1;
+)";
+
+/// Version 2 differs in the models' table alone.
+constexpr char kVersion2[] = R"(
+DROP TABLE models;
+CREATE TABLE models (
+  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, scan BLOB NOT NULL,
+  content_hash BLOB NOT NULL, spec BLOB NOT NULL, report BLOB NOT NULL, create_time_us INTEGER NOT NULL,
+  bone_scan BLOB NOT NULL DEFAULT x'', PRIMARY KEY (patient, id));
+PRAGMA user_version = 2;
+)";
+
+constexpr char kContent[] = R"(
+INSERT INTO patients VALUES (x'61', x'6e616d65', 1);
+INSERT INTO patient_labels VALUES (x'61', x'6b', x'76');
+INSERT INTO scans VALUES (x'61', x'73', 2, 1, 5000000000, x'6162', 12, 0, x'', 2);
+INSERT INTO models (patient, id, scan, content_hash, spec, report, create_time_us)
+  VALUES (x'61', x'6d', x'73', x'68617368', x'00ff', x'72', 3);
+INSERT INTO simulations VALUES (x'72', x'6d', x'', x'70', 1, x'', x'', 4), (x'73', x'6d', x'', x'70', 4, x'', x'75', 5);
+INSERT INTO simulation_results VALUES (x'73', x'6d', x'66');
+INSERT INTO simulation_series VALUES (x'73', 1, 500, x'77');
+INSERT INTO requests VALUES (x'43', x'31', x'66', x'70');
+)";
+
+/// Every column of every table and every index, as the database sees them.
+std::set<std::string> shape_of(const std::string& path) {
+  const auto database = Database::open(path);
+  EXPECT_TRUE(database.ok());
+  std::set<std::string> shape;
+  Query tables(**database,
+               "SELECT m.type, m.name, c.cid, c.name, c.type, c.\"notnull\", coalesce(c.dflt_value, ''), c.pk "
+               "FROM sqlite_master m LEFT JOIN pragma_table_info(m.name) c ORDER BY 1, 2, 3");
+  while (tables.next()) {
+    std::string line;
+    for (int i = 0; i < 8; ++i) absl::StrAppend(&line, tables.text(i), "|");
+    shape.insert(line);
+  }
+  EXPECT_TRUE(tables.status().ok()) << tables.status();
+  return shape;
+}
+
+class SchemaTest : public ::testing::TestWithParam<int> {
+ protected:
+  void make(int version) {
+    const auto database = Database::open(path_);
+    ASSERT_TRUE(database.ok());
+    ASSERT_TRUE((*database)->execute(kVersion1).ok());
+    ASSERT_TRUE((*database)->execute(version == 2 ? kVersion2 : "").ok());
+    ASSERT_TRUE((*database)->execute(kContent).ok());
+  }
+  lipofill::testing::TemporaryDirectory directory_;
+  std::string path_ = directory_.file("db");
+};
+
+TEST_P(SchemaTest, IsBroughtUpToDateWithAllItHeld) {
+  make(GetParam());
+  for (int round = 0; round < 2; ++round) {
+    const auto store = SqliteStore::open(path_);
+    ASSERT_TRUE(store.ok()) << store.status();
+    EXPECT_EQ((*store)->get_patient("a")->labels.at("k"), "v");
+    EXPECT_EQ((*store)->get_scan("a", "s")->size_bytes, 5'000'000'000u);
+    const auto model = (*store)->get_model("a", "m");
+    ASSERT_TRUE(model.ok()) << model.status();
+    EXPECT_EQ(model->content_hash, "hash");
+    EXPECT_EQ(model->spec_message, std::string("\0\xff", 2));
+    EXPECT_EQ(model->bone_scan, "");
+    EXPECT_EQ((*store)->get_simulation("s")->state, SimulationState::kSettled);
+    EXPECT_EQ((*store)->get_simulation("s")->origin, "");
+    EXPECT_EQ((*store)->get_result("s")->frame_message, "f");
+    EXPECT_EQ((**(*store)->next_series_chunk("s", 0)).rows_message, "w");
+    EXPECT_EQ(**(*store)->find_request({"C", "1", "f"}), "p");
+    EXPECT_EQ((*store)->get_simulation("r")->state, SimulationState::kFailed) << "it was lost with its daemon";
+    EXPECT_EQ((*store)->get_simulation("r")->reason, "the daemon stopped");
+    EXPECT_TRUE((*store)->list_unended_simulations()->empty());
+  }
+}
+
+TEST_P(SchemaTest, EndsInTheShapeOfANewOne) {
+  make(GetParam());
+  ASSERT_TRUE(SqliteStore::open(path_).ok());
+  ASSERT_TRUE(SqliteStore::open(directory_.file("new")).ok());
+  EXPECT_EQ(shape_of(path_), shape_of(directory_.file("new")));
+}
+
+TEST_P(SchemaTest, StaysAsItIsWhenTheChangeFails) {
+  make(GetParam());
+  // The last of the changes finds its table there already.
+  ASSERT_TRUE((*Database::open(path_))->execute("CREATE TABLE checkpoints (x)").ok());
+  const std::set<std::string> before = shape_of(path_);
+  EXPECT_FALSE(SqliteStore::open(path_).ok());
+  EXPECT_EQ(shape_of(path_), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryEarlierVersion, SchemaTest, ::testing::Range(1, kSchemaVersion));
+
+TEST(DamagedDatabase, IsRefusedWithWhatToDo) {
+  lipofill::testing::TemporaryDirectory directory;
+  const std::string path = directory.file("db");
+  {
+    const auto store = SqliteStore::open(path);
+    ASSERT_TRUE(store.ok());
+    for (int i = 0; i < 200; ++i) {
+      ASSERT_TRUE((*store)->create_patient({absl::StrCat("patient-", i), std::string(60, 'n'), {}, i}, {}).ok());
+    }
+  }
+  const auto size = std::filesystem::file_size(path);
+  ASSERT_GT(size, 5u * 4096);
+  int refused = 0;
+  for (size_t page = 1; page < size / 4096; ++page) {
+    const std::string copy = directory.file("copy");
+    std::filesystem::copy_file(path, copy, std::filesystem::copy_options::overwrite_existing);
+    {
+      std::fstream file(copy, std::ios::in | std::ios::out | std::ios::binary);
+      file.seekp(static_cast<std::streamoff>(page * 4096));
+      file << std::string(4096, '\xa5');
+    }
+    const auto store = SqliteStore::open(copy);
+    if (store.ok()) continue;
+    ++refused;
+    EXPECT_TRUE(absl::IsDataLoss(store.status())) << page << ": " << store.status();
+    EXPECT_THAT(std::string(store.status().message()), HasSubstr("is damaged"));
+    EXPECT_THAT(std::string(store.status().message()), HasSubstr("Put a backup in its place"));
+  }
+  EXPECT_EQ(refused, static_cast<int>(size / 4096) - 1)
+      << "a page that belongs to a table or an index is missed by none";
+}
+
+}  // namespace
+}  // namespace lipofill::server

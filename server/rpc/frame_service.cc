@@ -6,7 +6,6 @@
 #include "core/base/field_violations.h"
 #include "server/rpc/names.h"
 #include "server/rpc/unary.h"
-#include "server/store/sqlite_store.h"
 
 namespace lipofill::server {
 namespace {
@@ -149,25 +148,9 @@ absl::Status FrameService::watch_kept(const v1::WatchRequest& request, const std
                                       const std::shared_ptr<WatchStream>& stream) {
   const auto options = to_viewer_options(request);
   if (!options.ok()) return options.status();
-  const auto result = backend_.store.get_result(id);
-  if (!result.ok()) return result.status();
-  v1::MeshSlice meshes;
-  v1::FrameSlice frame;
-  if (!meshes.ParseFromString(result->meshes_message) || !frame.ParseFromString(result->frame_message)) {
-    return absl::DataLossError(absl::StrCat("the result of ", simulation_name(id), " cannot be read"));
-  }
-  Topology known;
-  for (const std::string& name : mesh_names(meshes)) known.meshes.push_back({name, {}, {}, 3});
-  Viewer viewer(*options, [] {});
-  if (const absl::Status chosen = viewer.choose_meshes(known); !chosen.ok()) return chosen;
-  std::vector<std::string> fields;
-  for (const v1::ArraySlice& field : frame.fields()) fields.push_back(field.name());
-  if (const absl::Status checked = viewer.check_fields(fields); !checked.ok()) return checked;
-  keep_meshes(viewer.selection().meshes, *meshes.mutable_arrays());
-  keep_selection(viewer.selection(), frame);
-  meshes.set_topology_hash(compute_topology_hash(meshes));
-  frame.set_topology_hash(meshes.topology_hash());
-  stream->begin_kept(encode_meshes(meshes), encode_frame(frame));
+  const auto shown = kept_.show(id, *options);
+  if (!shown.ok()) return shown.status();
+  stream->begin_kept(*shown);
   return absl::OkStatus();
 }
 

@@ -2,6 +2,7 @@
 
 #include "lipofill/v1/frame_service.grpc.pb.h"
 #include "server/rpc/backend.h"
+#include "server/rpc/kept_result.h"
 #include "server/rpc/watch_stream.h"
 #include "server/sessions/viewer_registry.h"
 
@@ -12,7 +13,7 @@ namespace lipofill::server {
 class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<
                          v1::FrameService::WithCallbackMethod_AcknowledgeFrame<v1::FrameService::Service>> {
  public:
-  explicit FrameService(Backend& backend) : backend_(backend) {}
+  explicit FrameService(Backend& backend) : backend_(backend), kept_(backend.store) {}
 
   grpc::ServerWriteReactor<grpc::ByteBuffer>* Watch(grpc::CallbackServerContext* context,
                                                     const grpc::ByteBuffer* request) override;
@@ -29,6 +30,7 @@ class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<
 
   Backend& backend_;
   ViewerRegistry viewers_;
+  KeptResults kept_;
 };
 
 }  // namespace lipofill::server

@@ -29,11 +29,11 @@ void WatchStream::begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration
   advance(std::move(lock));
 }
 
-void WatchStream::begin_kept(const EncodedMessages& meshes, const EncodedMessages& frame) {
+void WatchStream::begin_kept(const std::shared_ptr<const KeptMessages>& kept) {
   self_ = shared_from_this();
   std::unique_lock lock(mutex_);
-  queue_meshes(std::make_shared<const EncodedMessages>(meshes));
-  queue_frame(std::make_shared<const EncodedMessages>(frame), 0);
+  queue_meshes({kept, &kept->meshes});
+  queue_frame({kept, &kept->frame}, 0);
   end_ = absl::OkStatus();
   advance(std::move(lock));
 }

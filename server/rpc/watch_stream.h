@@ -13,6 +13,7 @@
 
 #include "server/rpc/courier.h"
 #include "server/rpc/frame_encoding.h"
+#include "server/rpc/kept_result.h"
 #include "server/sessions/viewer.h"
 
 namespace lipofill::server {
@@ -32,7 +33,7 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   /// `on_done` is called once, at the end.
   void begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat, std::function<void()> on_done);
   /// A stream of messages that are all there.
-  void begin_kept(const EncodedMessages& meshes, const EncodedMessages& frame);
+  void begin_kept(const std::shared_ptr<const KeptMessages>& kept);
   /// A stream that ends at once.
   void begin_failed(const absl::Status& status);
   /// For the viewer: there is something to take. Never blocks.

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
-#include <filesystem>
-#include <fstream>
 #include <thread>
 
 #include "absl/strings/str_cat.h"
+#include "tests/integration/service/footprint.h"
 #include "tests/integration/service/spectator.h"
 #include "tests/integration/service/viewer_process.h"
 
@@ -18,28 +17,6 @@ namespace {
 
 constexpr int kEach = 5;
 constexpr uint64_t kSteps = 3000;
-
-/// What the kernel tells of the daemon.
-struct Footprint {
-  double resident_mb = 0.0;
-  int sockets = 0;
-};
-
-Footprint read_footprint(pid_t process) {
-  Footprint footprint;
-  const std::string proc = absl::StrCat("/proc/", process);
-  std::ifstream status(proc + "/status");
-  for (std::string word; status >> word;) {
-    if (word == "VmRSS:") status >> footprint.resident_mb;
-  }
-  footprint.resident_mb *= 1024e-6;
-  for (const auto& entry : std::filesystem::directory_iterator(proc + "/fd")) {
-    std::error_code gone;
-    const std::string target = std::filesystem::read_symlink(entry.path(), gone).string();
-    if (target.rfind("socket:", 0) == 0) ++footprint.sockets;
-  }
-  return footprint;
-}
 
 class CrowdTest : public ServiceTest {
  protected:

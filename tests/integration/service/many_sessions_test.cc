@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <thread>
 
 #include "absl/strings/str_cat.h"
+#include "tests/integration/service/footprint.h"
 #include "tests/integration/service/service_fixture.h"
 
 namespace lipofill::testing {
@@ -20,22 +20,6 @@ constexpr int kShortRun = 480;
 int sessions_of_a_run() {
   const char* wanted = std::getenv("LIPOFILL_SESSIONS");
   return wanted == nullptr ? kShortRun : std::max(kShortRun, std::atoi(wanted));
-}
-
-/// What /proc tells of the daemon.
-struct Footprint {
-  int threads = 0;
-  double resident_mb = 0.0;
-};
-
-Footprint read_footprint(pid_t process) {
-  Footprint footprint;
-  std::ifstream status(absl::StrCat("/proc/", process, "/status"));
-  for (std::string line; std::getline(status, line);) {
-    if (line.rfind("Threads:", 0) == 0) footprint.threads = std::atoi(line.c_str() + 8);
-    if (line.rfind("VmRSS:", 0) == 0) footprint.resident_mb = std::atof(line.c_str() + 6) * 1024e-6;
-  }
-  return footprint;
 }
 
 class ManySessionsTest : public ServiceTest {

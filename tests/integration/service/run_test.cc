@@ -43,7 +43,7 @@ TEST_F(RunTest, GivesTheSameBytesBesideOthersAndUnderWatch) {
   create(0.3, "alone");
   const std::string hash = await_end("simulations/alone").summary().state_hash();
   std::vector<std::unique_ptr<Watcher>> watchers;
-  for (int i = 0; i < 4; ++i) create(0.3, "x" + std::to_string(i), false);
+  for (int i = 0; i < 4; ++i) create(0.3, absl::StrCat("x", i), false);
   for (int i = 0; i < 4; ++i) {
     const std::string name = absl::StrCat("simulations/x", i);
     watchers.push_back(std::make_unique<Watcher>(*channel_, watch_request(name, v1::WatchRequest::LATEST)));

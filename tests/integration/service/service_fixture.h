@@ -50,6 +50,8 @@ class Watcher {
   bool next(SeenFrame& frame);
   /// Reads on to the end; returns the number of frames.
   int drain(SeenFrame* last = nullptr);
+  /// Until the first message is on its way, which is not read.
+  void await_sending() { stream_->WaitForInitialMetadata(); }
   grpc::Status finish() { return stream_->Finish(); }
   void cancel() { context_.TryCancel(); }
 

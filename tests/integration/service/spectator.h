@@ -23,6 +23,7 @@ class Spectator {
   const SeenFrame& frame() const { return frame_; }
   uint64_t sequence() const { return frame_.slice.sequence(); }
   bool saw_end() const { return frame_.slice.end(); }
+  void await_sending() { watcher_.await_sending(); }
   /// The status of a stream that has ended.
   grpc::Status finish() { return watcher_.finish(); }
   grpc::Status acknowledge();

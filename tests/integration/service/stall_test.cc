@@ -1,8 +1,10 @@
 // Viewers that do not read: they cost themselves frames or their stream, never the simulation.
 
+#include <deque>
 #include <thread>
 
-#include "tests/integration/service/service_fixture.h"
+#include "tests/integration/service/footprint.h"
+#include "tests/integration/service/spectator.h"
 
 namespace lipofill::testing {
 namespace {
@@ -11,24 +13,27 @@ class StallTest : public ServiceTest {
  protected:
   StallTest() {
     create_patient();
-    v1::ModelSpec spec = square_spec();
-    // Large frames from cheap steps (a fine skin that nothing moves, over a film with a wall of its own): the
-    // transport's buffers are full soon.
-    spec.clear_layers();
-    spec.set_n_xi(200);
-    spec.set_n_eta(200);
-    v1::Operation operation;
-    const grpc::Status status = build("patients/anna", spec, operation);
-    EXPECT_TRUE(status.ok()) << status.error_message();
-    v1::Model model;
-    EXPECT_TRUE(operation.response().UnpackTo(&model)) << operation.error().message();
     plan_ = parse_text<v1::SimulationSpec>(R"(
       films { name: "wide" n_xi: 4 n_eta: 4 zones { name: "all" box { xi_min: 0 xi_max: 1 eta_min: 0 eta_max: 1 } }
         wall { kind: WINKLER stiffness_kpa_per_mm: 10 } }
       injections { zone: "all" volume_ml: 0.1 rate_ml_per_s: 0.1 start_s: 0 }
       time { settle_skin_speed_mm_per_s: 0 })");
+    // The transport's buffers are full soon.
+    use_skin_of(200);
+  }
+
+  /// Large frames from cheap steps: a fine skin that nothing moves, over a film with a wall of its own.
+  void use_skin_of(uint32_t divisions) {
+    v1::ModelSpec spec = square_spec();
+    spec.clear_layers();
+    spec.set_n_xi(divisions);
+    spec.set_n_eta(divisions);
+    v1::Operation operation;
+    const grpc::Status status = build("patients/anna", spec, operation);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    v1::Model model;
+    EXPECT_TRUE(operation.response().UnpackTo(&model)) << operation.error().message();
     plan_.set_model(model.name());
-    plan_.mutable_time()->set_end_s(3600.0);
   }
 
   v1::WatchRequest watch_request(v1::WatchRequest::Delivery delivery) {
@@ -97,6 +102,19 @@ TEST_F(StallTest, EveryEndsWithResourceExhausted) {
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << status.error_message();
   const uint64_t now = steps();
   await_steps(now + 3);
+}
+
+TEST_F(StallTest, ViewersOfAResultShareItsBytes) {
+  // Meshes and frame are 11 MB, of which a viewer's own connection takes up to 4.
+  use_skin_of(500);
+  start(0.01);
+  ASSERT_EQ(await_end("simulations/x").state(), v1::Simulation::FINISHED);
+  const v1::WatchRequest request = watch_request(v1::WatchRequest::LATEST);
+  std::deque<Spectator> stalled;
+  stalled.emplace_back(daemon_->address(), request).await_sending();
+  const double of_one_mb = read_footprint(daemon_->pid()).resident_mb;
+  for (int k = 0; k < 14; ++k) stalled.emplace_back(daemon_->address(), request).await_sending();
+  EXPECT_LT(read_footprint(daemon_->pid()).resident_mb, of_one_mb + 50.0);
 }
 
 TEST_F(StallTest, CancelledViewersAreForgotten) {

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+
 #include "core/base/field_violations.h"
 #include "tests/unit/server/viewer_frames.h"
 
@@ -92,6 +95,55 @@ TEST(ViewerOptions, SendsTheNewestOnceWhatIsOnItsWayIsAcknowledged) {
   ASSERT_TRUE(viewer.acknowledge(5, 9).ok()) << "of both at once";
   EXPECT_EQ(viewer.unacknowledged(), 0u);
   EXPECT_EQ(take_frame(viewer).frame->sequence, 10u);
+}
+
+/// A session and a client in one, who keep account of what they did.
+struct BothEnds {
+  explicit BothEnds(const ViewerOptions& options) : viewer(options, [] {}) {}
+
+  void offer(bool end) { viewer.offer(frame(++offered, 0.0, end)); }
+  bool take() {
+    const ToSend next = viewer.take();
+    const auto* sent = std::get_if<FrameToSend>(&next);
+    if (sent == nullptr) return false;
+    EXPECT_GT(sent->frame->sequence, taken);
+    taken = sent->frame->sequence;
+    counted += 1 + sent->skipped;
+    return true;
+  }
+  void acknowledge(uint64_t sequence) {
+    if (taken == 0) return;
+    EXPECT_TRUE(viewer.acknowledge(5, sequence).ok());
+  }
+
+  Viewer viewer;
+  uint64_t offered = 0;
+  uint64_t taken = 0;
+  uint64_t counted = 0;  ///< taken, or told as skipped
+};
+
+TEST(ViewerOptions, WhateverTheOrderEachFrameIsTakenOrCounted) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    ViewerOptions options;
+    options.delivery = seed % 3 == 0 ? Delivery::kEvery : Delivery::kLatest;
+    options.max_unacknowledged = seed % 4;
+    BothEnds ends(options);
+    for (int k = 0; k < 100; ++k) {
+      const unsigned act = random() % 4;
+      if (act < 2) ends.offer(false);
+      if (act == 2) ends.take();
+      if (act == 3) ends.acknowledge(1 + random() % std::max<uint64_t>(ends.taken, 1));
+      EXPECT_LE(ends.viewer.unacknowledged(), options.max_unacknowledged);
+    }
+    ends.offer(true);
+    do {
+      ends.acknowledge(ends.taken);
+    } while (ends.take());
+    EXPECT_EQ(ends.taken, ends.offered);
+    EXPECT_EQ(ends.counted, ends.offered);
+  }
 }
 
 TEST(ViewerOptions, TheLastFrameWaitsForNoAcknowledgement) {

@@ -1,5 +1,7 @@
+#include <cmath>
 #include <cstring>
 #include <string>
+#include <type_traits>
 
 #include "core/base/hash.h"
 #include "core/simulation/simulation_impl.h"
@@ -65,14 +67,27 @@ struct Reader {
   template <typename T>
   void number(T& value) {
     raw(&value, sizeof value);
+    if constexpr (std::is_floating_point_v<T>) ok = ok && std::isfinite(value);
   }
   void array(double* values, Eigen::Index count) {
     Eigen::Index stored = -1;
     number(stored);
     ok = ok && stored == count;
     if (ok) raw(values, static_cast<size_t>(count) * sizeof(double));
+    ok = ok && Eigen::Map<const Eigen::ArrayXd>(values, count).isFinite().all();
   }
 };
+
+/// What no simulation ever is, whatever its numbers.
+bool is_possible(const SimulationState& state, int phase) {
+  const bool is_phase = phase >= static_cast<int>(Phase::kRunning) && phase <= static_cast<int>(Phase::kFailed);
+  const bool is_counted = state.slow_steps >= 0 && state.equal_steps >= 0 && state.late_iterations >= 0 &&
+                          state.late_pressure_iterations >= 0 &&
+                          (state.factored_in_double == 0 || state.factored_in_double == 1);
+  const bool is_timed =
+      state.time >= 0.0 && state.last_step >= 0.0 && state.next_step > 0.0 && state.factored_dt >= 0.0;
+  return is_phase && is_counted && is_timed;
+}
 
 struct HashVisitor {
   Hasher hasher;
@@ -124,8 +139,10 @@ absl::Status Simulation::restore(std::string_view snapshot) {
   reader.number(total);
   reader.number(initial);
   if (!snapshot.starts_with(kMagic) || !reader.ok || !reader.bytes.empty()) {
-    return absl::DataLossError("not a state of this simulation: its size or mark is another");
+    return absl::DataLossError(
+        "not a state of this simulation: its size or mark is another, or a number is not finite");
   }
+  if (!is_possible(state, phase)) return absl::DataLossError("a state that no simulation comes to");
   impl.state = std::move(state);
   impl.phase = static_cast<Phase>(phase);
   impl.schedule.restore_delivered(delivered, total);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
+#include <limits>
 #include <thread>
 #include <vector>
 
@@ -101,6 +103,13 @@ TEST(Snapshot, InjectionsOfALiveRunAreInThePlanOfTheOneThatGoesOn) {
   EXPECT_EQ(make_small_simulation(full)->inject(more).code(), absl::StatusCode::kResourceExhausted);
 }
 
+/// `bytes` with a number at a place replaced.
+template <typename T>
+std::string with(std::string bytes, size_t at, T value) {
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+  return bytes;
+}
+
 TEST(Snapshot, RefusesWhatIsNotItsState) {
   const auto simulation = make_small_simulation();
   simulation->advance_step();
@@ -109,6 +118,16 @@ TEST(Snapshot, RefusesWhatIsNotItsState) {
   for (const std::string& bad : {std::string(), std::string("x"), good.substr(0, good.size() - 1), good + "x",
                                  "y" + good.substr(1), good.substr(0, 40)}) {
     EXPECT_EQ(simulation->restore(bad).code(), absl::StatusCode::kDataLoss);
+    EXPECT_EQ(simulation->state_hash(), hash);
+  }
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double backwards = -0.01;
+  const int no_phase = 4;
+  constexpr size_t kTime = 16 + 8, kPhaseFromTheEnd = 4 + 8 + 8 + 8 + 8;
+  for (const std::string& impossible :
+       {with(good, kTime, nan), with(good, kTime, backwards), with(good, good.size() - 8, nan),
+        with(good, good.size() / 2 / 8 * 8, nan), with(good, good.size() - kPhaseFromTheEnd, no_phase)}) {
+    EXPECT_EQ(simulation->restore(impossible).code(), absl::StatusCode::kDataLoss);
     EXPECT_EQ(simulation->state_hash(), hash);
   }
   SimulationSpec other = make_small_plan();

@@ -67,16 +67,21 @@ class StreamAssembler {
   bool moved_ = false;
 };
 
-/// What fails here without its fault ends the stream too, which then says why.
-absl::Status acknowledge(const Connection& connection, const v1::WatchRequest& request) {
+/// What fails here without its fault ends the stream too, which then says why; no answer at all is DEADLINE_EXCEEDED.
+absl::Status acknowledge(const Connection& connection, const v1::WatchRequest& request,
+                         std::chrono::milliseconds limit) {
   v1::AcknowledgeFrameRequest message;
   message.set_simulation(request.simulation());
   message.set_viewer(request.viewer());
   message.set_epoch(request.seen_epoch());
   message.set_sequence(request.seen_sequence());
-  const absl::Status status =
-      connection.call<v1::FrameService>(&v1::FrameService::Stub::AcknowledgeFrame, message).status();
-  return absl::IsInvalidArgument(status) || absl::IsPermissionDenied(status) ? status : absl::OkStatus();
+  const absl::Status status = connection
+                                  .call<v1::FrameService>(&v1::FrameService::Stub::AcknowledgeFrame, message,
+                                                          std::chrono::ceil<std::chrono::seconds>(limit))
+                                  .status();
+  const bool counts =
+      absl::IsInvalidArgument(status) || absl::IsPermissionDenied(status) || absl::IsDeadlineExceeded(status);
+  return counts ? status : absl::OkStatus();
 }
 
 std::string make_viewer_name() {
@@ -90,9 +95,20 @@ std::chrono::milliseconds silence_limit(const v1::WatchRequest& request) {
          (request.has_heartbeat_ms() ? std::chrono::ceil<std::chrono::milliseconds>(heartbeat) : kDefaultHeartbeat);
 }
 
-/// One stream to its end. `moved` says whether anything whole came.
-absl::Status watch_once(const Connection& connection, v1::WatchRequest& request, const WatchHandlers& handlers,
-                        bool* moved, bool* is_wire_error) {
+absl::Status silent(const Connection& connection, std::chrono::milliseconds limit) {
+  return absl::UnavailableError(absl::StrCat("nothing came from ", connection.server(), " for ",
+                                             static_cast<double>(limit.count()) / 1000.0, " s, not even a heartbeat"));
+}
+
+/// What became of one stream.
+struct StreamEnd {
+  absl::Status status;
+  bool moved = false;          ///< anything whole came
+  bool is_wire_error = false;  ///< not an error of the handlers
+};
+
+/// One stream to its end.
+StreamEnd watch_once(const Connection& connection, v1::WatchRequest& request, const WatchHandlers& handlers) {
   const auto stub = v1::FrameService::NewStub(connection.channel());
   grpc::ClientContext context;
   std::stop_callback cancel(connection.stop(), [&context] { context.TryCancel(); });
@@ -103,32 +119,31 @@ absl::Status watch_once(const Connection& connection, v1::WatchRequest& request,
   const auto reader = stub->Watch(&context, opened);
   StreamAssembler assembler(request, handlers);
   v1::WatchResponse response;
-  absl::Status status;
   const auto read = [&] {
     silence.begin_wait();
     const bool came = reader->Read(&response);
     silence.end_wait();
     return came;
   };
-  while (status.ok() && read()) {
-    status = assembler.add(response);
-    if (status.ok() && assembler.has_frame_to_acknowledge()) status = acknowledge(connection, request);
+  absl::Status handled;
+  absl::Status acknowledged;
+  while (handled.ok() && acknowledged.ok() && read()) {
+    handled = assembler.add(response);
+    if (handled.ok() && assembler.has_frame_to_acknowledge()) acknowledged = acknowledge(connection, request, limit);
   }
-  *moved = assembler.moved();
-  if (!status.ok()) context.TryCancel();
+  if (!handled.ok() || !acknowledged.ok()) context.TryCancel();
   const grpc::Status finished = reader->Finish();
-  *is_wire_error = status.ok() && !finished.ok();
-  if (!status.ok()) return status;
-  if (silence.was_silent()) {
-    return absl::UnavailableError(absl::StrCat("nothing came from ", connection.server(), " for ",
-                                               static_cast<double>(limit.count()) / 1000.0,
-                                               " s, not even a heartbeat"));
+  if (!handled.ok()) return {handled, assembler.moved(), false};
+  if (silence.was_silent() || absl::IsDeadlineExceeded(acknowledged)) {
+    return {silent(connection, limit), assembler.moved(), true};
   }
-  return status_of(finished, connection.server());
+  if (!acknowledged.ok()) return {acknowledged, assembler.moved(), false};
+  return {status_of(finished, connection.server()), assembler.moved(), !finished.ok()};
 }
 
+/// Not ABORTED: another has taken this viewer's place.
 bool can_resume(const absl::Status& status) {
-  return absl::IsUnavailable(status) || absl::IsResourceExhausted(status) || absl::IsAborted(status);
+  return absl::IsUnavailable(status) || absl::IsResourceExhausted(status);
 }
 
 /// Waits unless the stop comes first; true when it did.
@@ -145,9 +160,7 @@ absl::Status watch(const Connection& connection, v1::WatchRequest request, const
   if (request.max_unacknowledged_frames() > 0 && request.viewer().empty()) request.set_viewer(make_viewer_name());
   bool seen_any = false;
   for (int resumes = 0;;) {
-    bool moved = false;
-    bool is_wire_error = false;
-    const absl::Status status = watch_once(connection, request, handlers, &moved, &is_wire_error);
+    const auto [status, moved, is_wire_error] = watch_once(connection, request, handlers);
     seen_any = seen_any || moved;
     resumes = moved ? 0 : resumes + 1;
     if (status.ok() || !is_wire_error || !can_resume(status) || !seen_any || resumes > kMaxResumes) return status;

@@ -140,6 +140,16 @@ TEST_F(FrameWatcherTest, AcknowledgesEachFrameOnceItIsTaken) {
   EXPECT_EQ(service_.requests[1].viewer(), service_.acknowledged[0].viewer()) << "the same takes its place again";
 }
 
+TEST_F(FrameWatcherTest, WhoseNameAnotherTookGivesWay) {
+  service_.streams = {[](const v1::WatchRequest&, Writer* writer) {
+    send_frame(writer, 3, false);
+    return grpc::Status(grpc::StatusCode::ABORTED, "another Watch of this viewer took its place");
+  }};
+  const LocalServer server(&service_);
+  EXPECT_TRUE(absl::IsAborted(watch(Connection(server.address()), {}, handlers())));
+  EXPECT_EQ(service_.requests.size(), 1u);
+}
+
 TEST_F(FrameWatcherTest, ARefusedAcknowledgementIsTold) {
   service_.streams = {[](const v1::WatchRequest&, Writer* writer) {
     send_frame(writer, 3, false);
@@ -182,6 +192,34 @@ TEST_F(FrameWatcherTest, ASilentDaemonIsABrokenStream) {
   EXPECT_TRUE(watch(Connection(server.address()), request, noting).ok());
   EXPECT_THAT(std::string(reason.message()), HasSubstr("not even a heartbeat"));
   EXPECT_THAT(frames_, ElementsAre(3, 5)) << "heartbeats for longer than that are no silence";
+}
+
+TEST_F(FrameWatcherTest, ADaemonThatDoesNotAnswerAnAcknowledgementIsSilentToo) {
+  std::promise<void> told;
+  const std::shared_future<void> resumed(told.get_future());
+  service_.streams = {[resumed](const v1::WatchRequest&, Writer* writer) {
+                        send_frame(writer, 3, false);
+                        resumed.wait();
+                        return grpc::Status::OK;
+                      },
+                      [](const v1::WatchRequest&, Writer* writer) {
+                        send_frame(writer, 4, true);
+                        return grpc::Status::OK;
+                      }};
+  service_.on_acknowledge = [resumed] { resumed.wait(); };
+  const LocalServer server(&service_);
+  v1::WatchRequest request;
+  request.set_heartbeat_ms(250);
+  request.set_max_unacknowledged_frames(1);
+  WatchHandlers noting = handlers();
+  absl::Status reason;
+  noting.on_resume = [&](const absl::Status& status) {
+    if (reason.ok()) told.set_value();
+    reason = status;
+  };
+  EXPECT_TRUE(watch(Connection(server.address()), request, noting).ok());
+  EXPECT_THAT(std::string(reason.message()), HasSubstr("not even a heartbeat"));
+  EXPECT_THAT(frames_, ElementsAre(3, 4));
 }
 
 TEST_F(FrameWatcherTest, AnErrorOfTheSimulationIsNotRetried) {

@@ -23,10 +23,12 @@ class BreakingFrameService : public v1::FrameService::Service {
   std::vector<v1::WatchRequest> requests;
   std::vector<v1::AcknowledgeFrameRequest> acknowledged;
   grpc::Status acknowledgement;
+  std::function<void()> on_acknowledge;
 
   grpc::Status AcknowledgeFrame(grpc::ServerContext*, const v1::AcknowledgeFrameRequest* request,
                                 v1::AcknowledgeFrameResponse*) override {
     acknowledged.push_back(*request);
+    if (on_acknowledge) on_acknowledge();
     return acknowledgement;
   }
   grpc::Status Watch(grpc::ServerContext*, const v1::WatchRequest* request,

@@ -35,8 +35,9 @@ absl::Status write_port(const std::string& path, int port) {
 }
 
 BackendOptions backend_options(const Options& options) {
-  BackendOptions backend{
-      options.workers, options.max_simulations, options.keepalive_s, options.keepalive_timeout_s, {}};
+  BackendOptions backend{options.workers,     options.max_simulations,
+                         options.keepalive_s, options.keepalive_timeout_s,
+                         options.max_viewers, {}};
   backend.checkpoints.interval_s = options.checkpoint_interval_s;
   backend.checkpoints.kept = options.checkpoints_kept;
   backend.checkpoints.most_bytes = options.checkpoint_space_mb * 1'000'000;

@@ -44,6 +44,10 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
       ->type_name("N")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  app.add_option("--max-viewers", options.max_viewers, "Streams of frames that may be open at once")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
   app.add_option("--keepalive-s", options.keepalive_s, "A client silent for so long is asked whether it is there")
       ->type_name("SECONDS")
       ->check(CLI::Range(0.1, 86400.0))

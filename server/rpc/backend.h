@@ -25,6 +25,7 @@ struct BackendOptions {
   /// time.
   double keepalive_s = 30.0;
   double keepalive_timeout_s = 20.0;
+  int max_viewers = 1000;
   CheckpointOptions checkpoints;
 };
 

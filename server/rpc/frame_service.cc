@@ -103,11 +103,22 @@ absl::Status FrameService::begin(const grpc::ByteBuffer& bytes, std::shared_ptr<
   const auto id = parse_simulation_name(request->simulation(), "simulation");
   if (!id.ok()) return id.status();
   if (backend_.stopping) return absl::UnavailableError("the daemon is stopping");
-  stream = std::make_shared<WatchStream>(backend_.courier, request->known_topology_hash());
+  std::shared_ptr<void> place = take_place();
+  if (place == nullptr) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("too many viewers are watching, the bound is ", backend_.options.max_viewers));
+  }
+  stream = std::make_shared<WatchStream>(backend_.courier, request->known_topology_hash(), std::move(place));
   if (const auto session = backend_.sessions.find(*id); session != nullptr) {
     return watch_session(*request, session, stream);
   }
   return watch_kept(*request, *id, stream);
+}
+
+std::shared_ptr<void> FrameService::take_place() {
+  if (++open_streams_ <= backend_.options.max_viewers) return {&open_streams_, [](std::atomic<int>* open) { --*open; }};
+  --open_streams_;
+  return nullptr;
 }
 
 absl::Status FrameService::watch_session(const v1::WatchRequest& request, const std::shared_ptr<Session>& session,

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <atomic>
+#include <memory>
+#include <string>
+
 #include "lipofill/v1/frame_service.grpc.pb.h"
 #include "server/rpc/backend.h"
 #include "server/rpc/kept_result.h"
@@ -28,7 +32,11 @@ class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<
   absl::Status watch_kept(const v1::WatchRequest& request, const std::string& id,
                           const std::shared_ptr<WatchStream>& stream);
 
+  /// Of the bounded number of streams, held while one is open; nullptr when there is none left.
+  std::shared_ptr<void> take_place();
+
   Backend& backend_;
+  std::atomic<int> open_streams_ = 0;
   ViewerRegistry viewers_;
   KeptResults kept_;
 };

@@ -74,6 +74,7 @@ void WatchStream::OnCancel() {
 void WatchStream::OnDone() {
   courier_.forget(weak_from_this());
   if (on_done_ != nullptr) on_done_();
+  place_.reset();
   const std::shared_ptr<WatchStream> last = std::move(self_);
 }
 

@@ -26,8 +26,9 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
                     public Courier::Stream,
                     public std::enable_shared_from_this<WatchStream> {
  public:
-  WatchStream(Courier& courier, std::string known_topology_hash)
-      : courier_(courier), known_topology_hash_(std::move(known_topology_hash)) {}
+  /// `place` is let go of when gRPC is done with the stream.
+  WatchStream(Courier& courier, std::string known_topology_hash, std::shared_ptr<void> place = nullptr)
+      : courier_(courier), known_topology_hash_(std::move(known_topology_hash)), place_(std::move(place)) {}
 
   /// A stream that shows what a session puts into the viewer, and a heartbeat where that was nothing for so long.
   /// `on_done` is called once, at the end.
@@ -53,6 +54,7 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
 
   Courier& courier_;
   const std::string known_topology_hash_;
+  std::shared_ptr<void> place_;
   std::shared_ptr<WatchStream> self_;
   std::function<void()> on_done_;
   std::atomic<bool> woken_ = false;

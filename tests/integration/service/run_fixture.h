@@ -57,6 +57,16 @@ class RunTest : public ServiceTest {
     request.set_delivery(delivery);
     return request;
   }
+  /// Of a viewer of simulations/x.
+  grpc::Status acknowledge(const std::string& viewer, const SeenFrame& frame) {
+    v1::AcknowledgeFrameRequest request;
+    request.set_simulation("simulations/x");
+    request.set_viewer(viewer);
+    request.set_epoch(frame.slice.epoch());
+    request.set_sequence(frame.slice.sequence());
+    v1::AcknowledgeFrameResponse response;
+    return call(*frames_, &v1::FrameService::Stub::AcknowledgeFrame, request, response);
+  }
 
   v1::Model model_;
 };

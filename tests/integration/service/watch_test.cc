@@ -1,7 +1,6 @@
 // What viewers of a simulation receive.
 
 #include <cstring>
-#include <functional>
 #include <thread>
 
 #include "tests/integration/service/run_fixture.h"
@@ -9,18 +8,7 @@
 namespace lipofill::testing {
 namespace {
 
-class WatchTest : public RunTest {
- protected:
-  grpc::Status acknowledge(const std::string& viewer, const SeenFrame& frame) {
-    v1::AcknowledgeFrameRequest request;
-    request.set_simulation("simulations/x");
-    request.set_viewer(viewer);
-    request.set_epoch(frame.slice.epoch());
-    request.set_sequence(frame.slice.sequence());
-    v1::AcknowledgeFrameResponse response;
-    return call(*frames_, &v1::FrameService::Stub::AcknowledgeFrame, request, response);
-  }
-};
+using WatchTest = RunTest;
 
 /// That the codes of `coded` stand for the values of `exact`, as closely as they say.
 void expect_close(const SeenFrame& exact, const SeenFrame& coded, const std::string& name) {
@@ -219,62 +207,6 @@ TEST_F(WatchTest, AFrameIsAsNewAsTheAcknowledgementBeforeIt) {
   EXPECT_TRUE(frame.slice.end()) << "which comes without an acknowledgement";
   ASSERT_FALSE(watcher.heartbeats.empty());
   EXPECT_EQ(watcher.heartbeats.back().unacknowledged_frames(), 1u);
-}
-
-TEST_F(WatchTest, RefusesAcknowledgementsOfWhatIsNot) {
-  create(1000.0, "x", false);
-  v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::LATEST);
-  request.set_max_unacknowledged_frames(1);
-  request.set_viewer("surgeon");
-  Watcher watcher(*channel_, request);
-  SeenFrame frame;
-  ASSERT_TRUE(watcher.next(frame));
-  EXPECT_EQ(acknowledge("nurse", frame).error_code(), grpc::StatusCode::NOT_FOUND);
-  SeenFrame future = frame;
-  future.slice.set_sequence(7);
-  EXPECT_EQ(violations_of(acknowledge("surgeon", future)).count("sequence"), 1u);
-  // The same viewer on a new connection: the daemon need not find out about the old one first.
-  Watcher again(*channel_, request);
-  ASSERT_TRUE(again.next(frame));
-  EXPECT_TRUE(acknowledge("surgeon", frame).ok());
-  EXPECT_FALSE(watcher.next(frame));
-  EXPECT_EQ(watcher.finish().error_code(), grpc::StatusCode::ABORTED);
-}
-
-TEST_F(WatchTest, NamesWhatCannotBeWatched) {
-  create(0.05, "x", false);
-  const auto refused = [this](const std::string& field, const std::function<void(v1::WatchRequest&)>& change) {
-    v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::EVERY);
-    change(request);
-    Watcher watcher(*channel_, request);
-    SeenFrame frame;
-    EXPECT_FALSE(watcher.next(frame)) << field;
-    const grpc::Status status = watcher.finish();
-    EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT) << field;
-    EXPECT_EQ(violations_of(status).count(field), 1u) << field << ": " << status.error_message();
-  };
-  refused("fields[0]", [](v1::WatchRequest& request) { request.add_fields("skin.colour"); });
-  refused("fields[0]", [](v1::WatchRequest& request) {
-    request.add_meshes("tissue");
-    request.add_fields("skin.pressure");
-  });
-  refused("heartbeat_ms", [](v1::WatchRequest& request) { request.set_heartbeat_ms(1.0); });
-  refused("viewer", [](v1::WatchRequest& request) { request.set_max_unacknowledged_frames(1); });
-  refused("viewer", [](v1::WatchRequest& request) { request.set_viewer("surgeon"); });
-  refused("viewer", [](v1::WatchRequest& request) {
-    request.set_max_unacknowledged_frames(1);
-    request.set_viewer("The Surgeon");
-  });
-  refused("max_unacknowledged_frames", [](v1::WatchRequest& request) {
-    request.set_max_unacknowledged_frames(2000);
-    request.set_viewer("surgeon");
-  });
-  refused("field_type", [](v1::WatchRequest& request) { request.set_field_type(v1::UINT8); });
-  refused("max_rate_hz", [](v1::WatchRequest& request) { request.set_max_rate_hz(10.0); });
-  refused("max_rate_hz", [](v1::WatchRequest& request) {
-    request.set_delivery(v1::WatchRequest::LATEST);
-    request.set_max_rate_hz(1001.0);
-  });
 }
 
 }  // namespace

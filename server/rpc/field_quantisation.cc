@@ -41,11 +41,11 @@ std::vector<Range> find_box(const std::vector<float>& values, size_t components)
 }  // namespace
 
 void quantise(v1::ArraySlice& array) {
-  if (array.type() != v1::FLOAT32) return;
+  if (array.type() != v1::FLOAT32 || array.data().empty()) return;
   const std::vector<float> values = floats_of(array);
   if (!std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); })) return;
   const size_t components = array.shape_size() > 1 ? array.shape(1) : 1;
-  if (values.empty() || components == 0) return;
+  if (components == 0) return;
   const std::vector<Range> box = find_box(values, components);
   std::vector<uint16_t> codes(values.size());
   for (size_t k = 0; k < values.size(); ++k) codes[k] = static_cast<uint16_t>(box[k % components].code(values[k]));

@@ -56,6 +56,8 @@ void add_patient_commands(CLI::App& root, Application& application);
 void add_scan_commands(CLI::App& root, Application& application);
 void add_volume_commands(CLI::App& scan, Application& application);
 void add_model_commands(CLI::App& root, Application& application);
+/// Below the group of the simulations.
+void add_checkpoint_commands(CLI::App& group, Application& application);
 void add_simulation_commands(CLI::App& root, Application& application);
 void add_watch_command(CLI::App& root, Application& application);
 void add_export_command(CLI::App& root, Application& application);

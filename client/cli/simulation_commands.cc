@@ -91,6 +91,7 @@ absl::StatusOr<ExitCode> inject(Application& application, const Options& options
   injection->set_volume_ml(options.volume_ml);
   injection->set_rate_ml_per_s(options.rate_ml_per_s);
   if (options.start_s) injection->set_start_s(*options.start_s);
+  request.set_request_id(options.request_id);
   const auto simulation = application.connect().call<SimulationService>(&Stub::Inject, request);
   if (!simulation.ok()) return simulation.status();
   return answer(application, *simulation);
@@ -133,6 +134,7 @@ void add_injection(CLI::App& group, Application& application, const std::shared_
   command->add_option("--volume-ml", options->volume_ml, "negative: taken out")->required();
   command->add_option("--rate-ml-per-s", options->rate_ml_per_s, "how fast")->required();
   command->add_option("--start-s", options->start_s, "simulated time; default: now, or after those already due");
+  command->add_option("--request-id", options->request_id, "a repeated call with the same one is carried out once");
 }
 
 }  // namespace
@@ -160,6 +162,7 @@ void add_simulation_commands(CLI::App& root, Application& application) {
   add_command(*group, application, "list", "List all simulations", "  lipofill simulation list --json\n",
               [&application] { return list(application); });
   add_named("delete", "Delete it; one that runs is stopped first", remove);
+  add_checkpoint_commands(*group, application);
   add_named("series", "Its time series as CSV", series)
       ->add_option("--after-step", options->after_step, "only rows after this step");
 }

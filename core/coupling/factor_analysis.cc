@@ -3,6 +3,7 @@
 #include <cholmod.h>
 
 #include <algorithm>
+#include <mutex>
 #include <numeric>
 
 #include "absl/strings/str_cat.h"
@@ -76,7 +77,7 @@ class CholmodAnalysis {
   bool analyse(const Sparse& s, const Sparse& b) {
     Sparse tissue = s;
     cholmod_sparse view = view_pattern(tissue);
-    cholmod_factor* of_tissue = cholmod_analyze(&view, &common_);
+    cholmod_factor* of_tissue = order_alone(view);
     if (of_tissue == nullptr) return false;
     const int* tissue_order = static_cast<int*>(of_tissue->Perm);
     std::vector<int> order(tissue_order, tissue_order + s.cols());
@@ -132,6 +133,14 @@ class CholmodAnalysis {
   }
 
  private:
+  /// Nested dissection bisects with METIS, whose random numbers come from one generator of the whole process: two
+  /// orderings at once would take each other's, and find another order than alone.
+  cholmod_factor* order_alone(cholmod_sparse& pattern) {
+    static std::mutex one_at_a_time;
+    const std::lock_guard lock(one_at_a_time);
+    return cholmod_analyze(&pattern, &common_);
+  }
+
   bool pressures_are_last(int n_dofs) const {
     const int* order = static_cast<int*>(factor_->Perm);
     return std::all_of(order + n_dofs, order + factor_->n, [&](int k) { return k >= n_dofs; });

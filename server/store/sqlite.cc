@@ -2,6 +2,8 @@
 
 #include <sqlite3.h>
 
+#include <cerrno>
+
 #include "absl/strings/str_cat.h"
 #include "server/store/durable_file.h"
 
@@ -24,6 +26,7 @@ Query::~Query() {
 
 bool Query::next() {
   if (!status_.ok()) return false;
+  errno = 0;
   const int code = sqlite3_step(statement_);
   if (code == SQLITE_ROW) return true;
   note(code);
@@ -85,6 +88,7 @@ Database::~Database() {
 }
 
 absl::Status Database::execute(const char* sql) {
+  errno = 0;
   const int code = sqlite3_exec(handle_, sql, nullptr, nullptr, nullptr);
   return code == SQLITE_OK ? absl::OkStatus() : error(code);
 }
@@ -116,7 +120,8 @@ absl::Status Database::error(int code) const {
     case SQLITE_TOOBIG:
       return absl::ResourceExhaustedError(message);
     case SQLITE_IOERR:
-      if (is_out_of_space(sqlite3_system_errno(handle_))) {
+      // SQLite knows ENOSPC alone as a lack of room; of a quota or a limit it leaves no more than this.
+      if (is_out_of_space(errno)) {
         return absl::ResourceExhaustedError("store: no space is left in the data directory");
       }
       return absl::UnavailableError(message);

@@ -112,6 +112,40 @@ TEST_F(CommandsTest, ModelAndSimulationStepByStep) {
   EXPECT_EQ(tell("operation get nothing").exit_code, 4);
 }
 
+TEST_F(CommandsTest, KeepsAStateAndGoesBackToIt) {
+  ask("patient create --id p");
+  const std::string model = ask("model build p plan.json")["name"];
+  write_plan("long.json", "/simulation/time/end_s", 100000.0);
+  ask("simulation create long.json --id s --start --model " + model);
+  for (int i = 0; i < 200 && ask("simulation get s")["summary"]["steps"] == "0"; ++i) continue;
+  const auto kept = ask("simulation checkpoint s --id before --request-id r1");
+  EXPECT_EQ(kept["name"], "simulations/s/checkpoints/before");
+  EXPECT_EQ(ask("simulation checkpoint s --id before --request-id r1")["step"], kept["step"]);
+  EXPECT_EQ(tell("simulation checkpoint s --id before").exit_code, 4);
+  EXPECT_THAT(tell("simulation checkpoints s").output, HasSubstr("simulations/s/checkpoints/before  step "));
+  ask("simulation inject s --zone middle --volume-ml 0.1 --rate-ml-per-s 1 --request-id i1");
+  EXPECT_EQ(
+      ask("simulation inject s --zone middle --volume-ml 0.1 --rate-ml-per-s 1 --request-id i1")["spec"]["injections"]
+          .size(),
+      2u);
+  ask("simulation pause s");
+  const auto back = ask("simulation restore simulations/s/checkpoints/before");
+  EXPECT_EQ(back["state"], "PAUSED");
+  EXPECT_EQ(back["summary"]["state_hash"], kept["state_hash"]);
+  EXPECT_EQ(back["spec"]["injections"].size(), 1u);
+  daemon_->kill_hard();
+  start();
+  EXPECT_EQ(ask("simulation get s")["summary"]["state_hash"], kept["state_hash"]);
+  const auto other = ask("simulation restore simulations/s/checkpoints/before --new --id t --start");
+  EXPECT_EQ(other["origin"], "simulations/s/checkpoints/before");
+  EXPECT_EQ(other["state"], "RUNNING");
+  EXPECT_EQ(tell("simulation restore simulations/s/checkpoints/before --id t").exit_code, 2);
+  EXPECT_EQ(tell("simulation restore simulations/s/checkpoints/none").exit_code, 4);
+  ask("simulation stop t");
+  ask("simulation forget simulations/s/checkpoints/before");
+  EXPECT_EQ(tell("simulation forget simulations/s/checkpoints/before").exit_code, 4);
+}
+
 TEST_F(CommandsTest, WatchGivesALineAFrame) {
   ask("patient create --id p");
   const std::string model = ask("model build p plan.json")["name"];

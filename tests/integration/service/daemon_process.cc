@@ -41,6 +41,16 @@ std::string read_file(const std::string& path) {
   return text.str();
 }
 
+/// The arguments of a daemon on a free port, with two workers unless they say otherwise.
+std::vector<std::string> all_arguments(const std::string& data, const std::vector<std::string>& arguments) {
+  std::vector<std::string> all = {"--listen", "127.0.0.1:0", "--data", data, "--port-file", data + ".port"};
+  if (std::find(arguments.begin(), arguments.end(), "--workers") == arguments.end()) {
+    all.insert(all.end(), {"--workers", "2"});
+  }
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return all;
+}
+
 int exit_code_of(int status) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
@@ -50,12 +60,7 @@ int exit_code_of(int status) {
 DaemonProcess::DaemonProcess(const std::string& data, const std::vector<std::string>& arguments) {
   const std::string port_file = data + ".port";
   std::filesystem::remove(port_file);
-  std::vector<std::string> all = {"--listen", "127.0.0.1:0", "--data", data, "--port-file", port_file};
-  if (std::find(arguments.begin(), arguments.end(), "--workers") == arguments.end()) {
-    all.insert(all.end(), {"--workers", "2"});
-  }
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  process_ = start(all, data + ".log");
+  process_ = start(all_arguments(data, arguments), data + ".log");
   const Clock::time_point deadline = Clock::now() + std::chrono::seconds(30);
   while (port_ == 0 && running() && Clock::now() < deadline) {
     std::ifstream(port_file) >> port_;
@@ -64,6 +69,14 @@ DaemonProcess::DaemonProcess(const std::string& data, const std::vector<std::str
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   EXPECT_NE(port_, 0) << "lipofilld does not serve:\n" << read_file(data + ".log");
+}
+
+void DaemonProcess::start_and_kill(const std::string& data, const std::vector<std::string>& arguments,
+                                   std::chrono::milliseconds lifetime) {
+  const pid_t process = start(all_arguments(data, arguments), data + ".log");
+  std::this_thread::sleep_for(lifetime);
+  ::kill(process, SIGKILL);
+  ::waitpid(process, nullptr, 0);
 }
 
 DaemonProcess::~DaemonProcess() {

@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,10 @@ class DaemonProcess {
   ~DaemonProcess();
   DaemonProcess(const DaemonProcess&) = delete;
   DaemonProcess& operator=(const DaemonProcess&) = delete;
+
+  /// Starts one and kills it (SIGKILL) after a while, whether it serves by then or not.
+  static void start_and_kill(const std::string& data, const std::vector<std::string>& arguments,
+                             std::chrono::milliseconds lifetime);
 
   std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
   void signal(int number) const;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/integration/service/service_fixture.h"
 
@@ -9,7 +11,7 @@ namespace lipofill::testing {
 /// A square model ready to be simulated, and what is asked of its simulations.
 class RunTest : public ServiceTest {
  protected:
-  RunTest() {
+  explicit RunTest(std::vector<std::string> arguments = {}) : ServiceTest(std::move(arguments)) {
     create_patient();
     model_ = build_square();
   }

@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/coupling/algebra_threads.h"
+#include "core/coupling/thread_random.h"
 
 namespace lipofill::coupling {
 namespace {
@@ -133,11 +134,12 @@ class CholmodAnalysis {
   }
 
  private:
-  /// Nested dissection bisects with METIS, whose random numbers come from one generator of the whole process: two
-  /// orderings at once would take each other's, and find another order than alone.
+  /// Nested dissection bisects with METIS, which draws random numbers: see thread_random.h. Where it finds those of the
+  /// whole process alone, orderings take turns.
   cholmod_factor* order_alone(cholmod_sparse& pattern) {
     static std::mutex one_at_a_time;
-    const std::lock_guard lock(one_at_a_time);
+    std::unique_lock turn(one_at_a_time, std::defer_lock);
+    if (!has_random_numbers_of_its_own()) turn.lock();
     return cholmod_analyze(&pattern, &common_);
   }
 

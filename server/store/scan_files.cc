@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "server/store/durable_file.h"
 
 namespace lipofill::server {
 namespace fs = std::filesystem;
@@ -45,6 +46,13 @@ absl::Status ScanFiles::write(const std::string& patient, const std::string& sca
     offset += static_cast<uint64_t>(n);
   }
   ::close(file);
+  return done;
+}
+
+absl::Status ScanFiles::flush(const std::string& patient, const std::string& scan) const {
+  absl::Status done = flush_to_medium(root_ / patient / scan);
+  done.Update(flush_to_medium(root_ / patient));
+  done.Update(flush_to_medium(root_));
   return done;
 }
 

@@ -22,6 +22,8 @@ class ScanFiles {
   /// Writes at an offset, making the file where there is none. RESOURCE_EXHAUSTED when the disk is full.
   absl::Status write(const std::string& patient, const std::string& scan, uint64_t offset,
                      std::string_view bytes) const;
+  /// Waits until all that was written to a scan is on the medium.
+  absl::Status flush(const std::string& patient, const std::string& scan) const;
   absl::StatusOr<std::string> read(const std::string& patient, const std::string& scan) const;
   void remove(const std::string& patient, const std::string& scan) const;
   void remove_patient(const std::string& patient) const;

@@ -15,6 +15,8 @@ TEST(ScanFiles, WritesAtOffsetsAndReadsBack) {
   ASSERT_TRUE(files->write("anna", "s1", 0, "hello ").ok());
   ASSERT_TRUE(files->write("anna", "s1", 6, std::string("w\0rld", 5)).ok());
   EXPECT_EQ(files->size("anna", "s1"), 11u);
+  EXPECT_TRUE(files->flush("anna", "s1").ok());
+  EXPECT_FALSE(files->flush("anna", "none").ok());
   EXPECT_EQ(*files->read("anna", "s1"), std::string("hello w\0rld", 11));
   files->remove("anna", "s1");
   EXPECT_EQ(files->size("anna", "s1"), 0u);

@@ -51,6 +51,7 @@ class MemorySink : public SessionSink {
   absl::StatusOr<uint64_t> begin_epoch(const std::string&) override { return ++epoch; }
   absl::StatusOr<CheckpointRecord> keep_checkpoint(const CheckpointRecord& draft, const std::string& snapshot,
                                                    const std::vector<SeriesEntry>& rows, const RequestKey&) override {
+    std::this_thread::sleep_for(checkpoint_time);
     const std::lock_guard lock(mutex);
     if (!room.ok()) return room;
     checkpoints.push_back({draft, snapshot, rows.size()});
@@ -72,7 +73,8 @@ class MemorySink : public SessionSink {
   }
 
   std::mutex mutex;
-  absl::Status room;  ///< what keeping anything says
+  absl::Status room;                             ///< what keeping anything says
+  std::chrono::milliseconds checkpoint_time{0};  ///< what it takes to keep one
   uint64_t epoch = 100;
   std::set<std::string> requests;
   std::vector<CommandRecord> commands;

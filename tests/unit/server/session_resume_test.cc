@@ -188,6 +188,23 @@ TEST_F(SessionResumeTest, KeepsItsStateAsItRunsAndGoesOnFromEach) {
   }
 }
 
+TEST_F(SessionResumeTest, KeepsItsStateRarelyWhereThatIsSlow) {
+  sink_.checkpoint_time = std::chrono::milliseconds(2);
+  const auto s = session(make_simulation(1e6), {}, 1e-4);
+  ASSERT_TRUE(start(*s).ok());
+  for (size_t kept = 0; kept < 3;) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const std::lock_guard lock(sink_.mutex);
+    kept = sink_.checkpoints.size();
+  }
+  ASSERT_TRUE(ask([&](auto reply) { s->stop("", {}, reply); }).ok());
+  for (size_t i = 1; i < 3; ++i) {
+    const int64_t apart_us =
+        sink_.checkpoints[i].record.create_time_us - sink_.checkpoints[i - 1].record.create_time_us;
+    EXPECT_GE(apart_us, 100 * 2000) << "at most a hundredth of the run";
+  }
+}
+
 TEST_F(SessionResumeTest, SaysThatItCannotKeepItsStateAndGoesOn) {
   sink_.room = absl::OkStatus();
   const auto s = session(make_simulation(1e6), {}, 1e-4);

@@ -15,6 +15,17 @@ TEST(Names, ComeApart) {
   EXPECT_EQ(scan->id, "s1");
 }
 
+TEST(Names, OfCheckpointsComeApart) {
+  const auto checkpoint = parse_checkpoint_name("simulations/x/checkpoints/c-1", "name");
+  ASSERT_TRUE(checkpoint.ok()) << checkpoint.status();
+  EXPECT_EQ(checkpoint->simulation, "x");
+  EXPECT_EQ(checkpoint->id, "c-1");
+  for (const char* bad : {"simulations/x", "simulations/x/checkpoints/", "simulations/x/checkpoints/../y",
+                          "simulations//checkpoints/c", "patients/x/checkpoints/c"}) {
+    EXPECT_FALSE(parse_checkpoint_name(bad, "name").ok()) << bad;
+  }
+}
+
 TEST(Names, RefuseWhatIsNone) {
   for (const std::string name : {"", "anna", "patients/", "patients/Anna", "patients/1a", "patients/a/b",
                                  "patients/../x", "patients/a/scans/", "models/a", "patients/a\xff"}) {

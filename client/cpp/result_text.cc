@@ -24,7 +24,43 @@ std::string series_header(const v1::SimulationSpec& spec) {
   }
   return header +
          ",wall_ms,rejected_steps,error_estimate_mm,void_volume_ml,elastic_energy_mj,injection_work_mj,"
-         "film_dissipation_mj,ligament_tension_n,broken_ligament_points,closed_cells\n";
+         "film_dissipation_mj,ligament_tension_n,broken_ligament_points,closed_cells,cpu_ms,element_cpu_ms,"
+         "factor_cpu_ms,solve_cpu_ms,film_cpu_ms,coupling_cpu_ms,factorisations,tissue_solves,film_iterations,"
+         "newton_iterations,iterative_iterations,fallbacks\n";
+}
+
+void append_cost(std::string& csv, const v1::ComputingCost& cost) {
+  for (double value : {cost.cpu_ms(), cost.element_cpu_ms(), cost.factor_cpu_ms(), cost.solve_cpu_ms(),
+                       cost.film_cpu_ms(), cost.coupling_cpu_ms()}) {
+    absl::StrAppend(&csv, ",", number(value));
+  }
+  for (uint64_t count : {cost.factorisations(), cost.tissue_solves(), cost.film_iterations(), cost.newton_iterations(),
+                         cost.iterative_iterations(), cost.fallbacks()}) {
+    absl::StrAppend(&csv, ",", count);
+  }
+}
+
+nlohmann::ordered_json cost_json(const v1::ComputingCost& cost) {
+  return {{"cpu_ms", cost.cpu_ms()},
+          {"element_cpu_ms", cost.element_cpu_ms()},
+          {"factor_cpu_ms", cost.factor_cpu_ms()},
+          {"solve_cpu_ms", cost.solve_cpu_ms()},
+          {"film_cpu_ms", cost.film_cpu_ms()},
+          {"coupling_cpu_ms", cost.coupling_cpu_ms()},
+          {"factorisations", cost.factorisations()},
+          {"tissue_solves", cost.tissue_solves()},
+          {"film_iterations", cost.film_iterations()},
+          {"newton_iterations", cost.newton_iterations()},
+          {"iterative_iterations", cost.iterative_iterations()},
+          {"fallbacks", cost.fallbacks()}};
+}
+
+std::string cost_text(const v1::ComputingCost& cost) {
+  return absl::StrFormat(
+      "  processor    %.0f ms: tissue %.0f, factors %.0f, solves %.0f, film %.0f, coupling %.0f; %u factors, "
+      "%u solves, %u fallbacks\n",
+      cost.cpu_ms(), cost.element_cpu_ms(), cost.factor_cpu_ms(), cost.solve_cpu_ms(), cost.film_cpu_ms(),
+      cost.coupling_cpu_ms(), cost.factorisations(), cost.tissue_solves(), cost.fallbacks());
 }
 
 std::string preview_state_name(const v1::PreviewSummary& preview) {
@@ -121,6 +157,7 @@ std::string summary_json(const std::string& plan, const v1::Simulation& simulati
       {"closed_cells", summary.closed_cells()},
       {"ligaments", ligaments},
       {"preview", preview_json(summary)},
+      {"cost", cost_json(summary.cost())},
   };
   return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
@@ -134,6 +171,7 @@ std::string summary_text(const std::string& plan, const v1::Simulation& simulati
       "\n  time         %.2f s simulated in %u steps, %u taken back; %.1f s of computing, median step "
       "%.1f ms\n",
       s.time_s(), s.steps(), s.rejected_steps(), s.wall_s(), s.step_ms_median());
+  if (s.has_cost()) absl::StrAppend(&text, cost_text(s.cost()));
   absl::StrAppendFormat(&text, "  model        %u hexahedra, %u film cells, %u unknowns; worst scaled Jacobian %.2f\n",
                         s.hexahedra(), s.film_cells(), s.dofs(), s.min_scaled_jacobian());
   absl::StrAppendFormat(&text,
@@ -196,7 +234,9 @@ std::string series_csv(const v1::SimulationSpec& spec, const std::vector<v1::Ser
                          row.injection_work_mj(), row.film_dissipation_mj(), row.ligament_tension_n()}) {
       absl::StrAppend(&csv, ",", number(value));
     }
-    absl::StrAppend(&csv, ",", row.broken_ligament_points(), ",", row.closed_cells(), "\n");
+    absl::StrAppend(&csv, ",", row.broken_ligament_points(), ",", row.closed_cells());
+    append_cost(csv, row.cost());
+    csv += "\n";
   }
   return csv;
 }

@@ -125,6 +125,23 @@ v1::ScanReport to_scan_report(const geometry::SurfaceMesh& mesh, const geometry:
   return report;
 }
 
+v1::ComputingCost to_computing_cost(const simulation::CostSum& sum) {
+  v1::ComputingCost cost;
+  cost.set_cpu_ms(sum.times.total * kMillisecondPerSecond);
+  cost.set_element_cpu_ms(sum.times.element * kMillisecondPerSecond);
+  cost.set_factor_cpu_ms(sum.times.factor * kMillisecondPerSecond);
+  cost.set_solve_cpu_ms(sum.times.solve * kMillisecondPerSecond);
+  cost.set_film_cpu_ms(sum.times.film * kMillisecondPerSecond);
+  cost.set_coupling_cpu_ms(sum.times.coupling * kMillisecondPerSecond);
+  cost.set_factorisations(sum.factorisations);
+  cost.set_tissue_solves(sum.tissue_solves);
+  cost.set_film_iterations(sum.film_iterations);
+  cost.set_newton_iterations(sum.newton_iterations);
+  cost.set_iterative_iterations(sum.iterative_iterations);
+  cost.set_fallbacks(sum.fallbacks);
+  return cost;
+}
+
 v1::Summary to_summary(const SessionView& view) {
   const simulation::StepReport& step = view.report;
   v1::Summary summary;
@@ -159,6 +176,7 @@ v1::Summary to_summary(const SessionView& view) {
   summary.set_film_dissipation_mj(step.film_dissipation * kMillijoulePerJoule);
   summary.set_closed_cells(static_cast<uint32_t>(step.closed_cells));
   if (view.preview) *summary.mutable_preview() = to_preview_summary(*view.preview);
+  *summary.mutable_cost() = to_computing_cost(view.cost);
   for (const simulation::LigamentReport& report : view.ligaments) {
     v1::LigamentSummary* ligament = summary.add_ligaments();
     ligament->set_name(report.name);
@@ -203,6 +221,9 @@ v1::SeriesRow to_series_row(const SeriesEntry& entry) {
   row.set_ligament_tension_n(step.ligament_tension);
   row.set_broken_ligament_points(static_cast<uint32_t>(step.broken_ligament_points));
   row.set_closed_cells(static_cast<uint32_t>(step.closed_cells));
+  simulation::CostSum cost;
+  cost.add(step.cost);
+  *row.mutable_cost() = to_computing_cost(cost);
   return row;
 }
 

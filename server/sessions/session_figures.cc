@@ -24,6 +24,7 @@ double median(std::vector<float> values) {
 
 void Session::record_step(double wall_ms) {
   step_ms_.push_back(static_cast<float>(wall_ms));
+  cost_.add(simulation_->report().cost);
   update_view();
   size_t n_pending = 0;
   {
@@ -66,6 +67,7 @@ void Session::update_view() {
   view_.zones = std::move(zones);
   view_.ligaments = std::move(ligaments);
   view_.wall_s = wall_s;
+  view_.cost = cost_;
 }
 
 SessionView Session::full_view() {

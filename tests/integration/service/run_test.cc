@@ -37,6 +37,16 @@ TEST_F(RunTest, FinishesWithFiguresAndSeries) {
   EXPECT_EQ(all.rows(29).probe_thickness_mm_size(), 1);
   EXPECT_EQ(all.rows(29).injected_ml(), summary.injected_ml());
   EXPECT_EQ(series("simulations/x", 25).rows_size(), 5);
+
+  const v1::ComputingCost& cost = summary.cost();
+  EXPECT_GT(cost.cpu_ms(), 0.0);
+  EXPECT_GT(cost.newton_iterations(), 0u);
+  EXPECT_LE(
+      cost.element_cpu_ms() + cost.factor_cpu_ms() + cost.solve_cpu_ms() + cost.film_cpu_ms() + cost.coupling_cpu_ms(),
+      cost.cpu_ms());
+  double cpu_ms = 0.0;
+  for (const v1::SeriesRow& row : all.rows()) cpu_ms += row.cost().cpu_ms();
+  EXPECT_NEAR(cpu_ms, cost.cpu_ms(), 1e-6 * cost.cpu_ms()) << "the summary is the sum of the series";
 }
 
 TEST_F(RunTest, GivesTheSameBytesBesideOthersAndUnderWatch) {

@@ -30,6 +30,10 @@ v1::Simulation sample() {
   ligament->set_tension_n(1.5);
   ligament->set_points(2);
   ligament->set_broken_points(1);
+  summary->mutable_cost()->set_cpu_ms(250);
+  summary->mutable_cost()->set_factor_cpu_ms(130);
+  summary->mutable_cost()->set_factorisations(4);
+  summary->mutable_cost()->set_fallbacks(2);
   return simulation;
 }
 
@@ -44,7 +48,7 @@ TEST(SummaryJson, HasTheKeysOthersRelyOn) {
                                 "skin_volume_change_ml", "min_scaled_jacobian", "state_hash", "zones", "rejected_steps",
                                 "error_estimate_mm", "settling_error_mm", "void_volume_ml", "undelivered_ml",
                                 "elastic_energy_mj", "kinetic_energy_mj", "injection_work_mj", "film_dissipation_mj",
-                                "closed_cells", "ligaments", "preview"));
+                                "closed_cells", "ligaments", "preview", "cost"));
   keys.clear();
   for (const auto& [key, value] : json["zones"][0].items()) keys.push_back(key);
   EXPECT_THAT(keys, ElementsAre("name", "volume_ml", "mean_pressure_pa", "max_thickness_mm"));
@@ -55,6 +59,8 @@ TEST(SummaryJson, HasTheKeysOthersRelyOn) {
   EXPECT_TRUE(json["min_pressure_pa"].is_null());
   EXPECT_TRUE(json["settling_error_mm"].is_null());
   EXPECT_EQ(json["ligaments"][0]["broken_points"], 1);
+  EXPECT_EQ(json["cost"]["cpu_ms"], 250.0);
+  EXPECT_EQ(json["cost"]["fallbacks"], 2);
   EXPECT_TRUE(json["preview"].is_null());
 }
 
@@ -89,6 +95,8 @@ TEST(SummaryText, IsForPeople) {
   EXPECT_THAT(text, HasSubstr("jaw_angle: SETTLED (at rest)"));
   EXPECT_THAT(text, HasSubstr("4.500 mL injected"));
   EXPECT_THAT(text, HasSubstr("10.0 mmHg"));
+  EXPECT_THAT(text, HasSubstr("processor    250 ms: tissue 0, factors 130"));
+  EXPECT_THAT(text, HasSubstr("4 factors, 0 solves, 2 fallbacks"));
   EXPECT_THAT(text, HasSubstr("3 taken back"));
   EXPECT_THAT(text, HasSubstr("0.250 mL less than planned"));
   EXPECT_THAT(text, HasSubstr("1.50 N, walls 0.00 mm apart, 1 of 2 points broken"));
@@ -106,13 +114,17 @@ TEST(SeriesCsv, NamesUnitsAndKeepsValues) {
   row.add_probe_thickness_mm(0.25);
   row.add_probe_pressure_pa(12);
   row.set_wall_ms(9);
+  row.mutable_cost()->set_cpu_ms(8.5);
+  row.mutable_cost()->set_newton_iterations(3);
   EXPECT_EQ(
       series_csv(spec, {row}),
       "step,time_s,step_ms,injected_ml,film_volume_ml,gap_volume_ml,max_pressure_pa,min_pressure_pa,max_thickness_mm,"
       "skin_max_displacement_mm,skin_speed_mm_per_s,probe_centre_thickness_mm,probe_centre_pressure_pa,"
       "probe_edge_thickness_mm,probe_edge_pressure_pa,wall_ms,rejected_steps,error_estimate_mm,void_volume_ml,"
-      "elastic_energy_mj,injection_work_mj,film_dissipation_mj,ligament_tension_n,broken_ligament_points,closed_cells\n"
-      "7,0.1,0,0.3333333333333333,0,0,0,0,0,0,0,0.25,12,,,9,0,0,0,0,0,0,0,0,0\n");
+      "elastic_energy_mj,injection_work_mj,film_dissipation_mj,ligament_tension_n,broken_ligament_points,closed_cells,"
+      "cpu_ms,element_cpu_ms,factor_cpu_ms,solve_cpu_ms,film_cpu_ms,coupling_cpu_ms,factorisations,tissue_solves,"
+      "film_iterations,newton_iterations,iterative_iterations,fallbacks\n"
+      "7,0.1,0,0.3333333333333333,0,0,0,0,0,0,0,0.25,12,,,9,0,0,0,0,0,0,0,0,0,8.5,0,0,0,0,0,0,0,0,3,0,0\n");
 }
 
 }  // namespace

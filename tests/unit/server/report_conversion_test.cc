@@ -81,6 +81,37 @@ TEST(ReportConversion, SeriesRowsAreInTheUnitsOfTheirNames) {
   EXPECT_DOUBLE_EQ(row.probe_pressure_pa(0), 20);
 }
 
+TEST(ReportConversion, CostsOfStepsAreInMillisecondsAndAddUp) {
+  simulation::StepCost step;
+  step.times = {0.001, 0.002, 0.003, 0.004, 0.005, 0.016};
+  step.factorisations = 1;
+  step.tissue_solves = 2;
+  step.film_iterations = 3;
+  step.newton_iterations = 4;
+  step.iterative_iterations = 5;
+  step.fallbacks = 6;
+  SeriesEntry entry{view().report, 12.5};
+  entry.report.cost = step;
+  const v1::ComputingCost one = to_series_row(entry).cost();
+  EXPECT_DOUBLE_EQ(one.element_cpu_ms(), 1.0);
+  EXPECT_DOUBLE_EQ(one.factor_cpu_ms(), 2.0);
+  EXPECT_DOUBLE_EQ(one.solve_cpu_ms(), 3.0);
+  EXPECT_DOUBLE_EQ(one.film_cpu_ms(), 4.0);
+  EXPECT_DOUBLE_EQ(one.coupling_cpu_ms(), 5.0);
+  EXPECT_DOUBLE_EQ(one.cpu_ms(), 16.0);
+  EXPECT_EQ(one.factorisations(), 1u);
+  EXPECT_EQ(one.tissue_solves(), 2u);
+  EXPECT_EQ(one.film_iterations(), 3u);
+  EXPECT_EQ(one.newton_iterations(), 4u);
+  EXPECT_EQ(one.iterative_iterations(), 5u);
+  EXPECT_EQ(one.fallbacks(), 6u);
+  SessionView whole = view();
+  whole.cost.add(step);
+  whole.cost.add(step);
+  EXPECT_DOUBLE_EQ(to_summary(whole).cost().cpu_ms(), 32.0);
+  EXPECT_EQ(to_summary(whole).cost().fallbacks(), 12u);
+}
+
 TEST(ReportConversion, EveryStateHasAName) {
   for (int state = 1; state <= 7; ++state) {
     const auto wire = to_state(static_cast<SimulationState>(state));

@@ -11,6 +11,7 @@ find_package(gRPC CONFIG REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
+find_package(prometheus-cpp REQUIRED)
 find_package(SQLite3 REQUIRED)
 find_package(OpenSSL REQUIRED)
 find_package(VTK 9.1 REQUIRED COMPONENTS
@@ -24,6 +25,13 @@ endif()
 if(LIPOFILL_TESTS AND LIPOFILL_BENCHMARKS)
   find_package(benchmark REQUIRED)
 endif()
+
+# cpp-httplib's Debian package has no CMake file; its class layouts depend on these definitions.
+find_library(HTTPLIB_LIBRARY cpp-httplib REQUIRED)
+add_library(lipofill_httplib INTERFACE)
+target_compile_definitions(lipofill_httplib INTERFACE
+  CPPHTTPLIB_OPENSSL_SUPPORT CPPHTTPLIB_ZLIB_SUPPORT CPPHTTPLIB_BROTLI_SUPPORT)
+target_link_libraries(lipofill_httplib INTERFACE ${HTTPLIB_LIBRARY} OpenSSL::SSL OpenSSL::Crypto Threads::Threads)
 
 # CHOLMOD's Debian package has no CMake file. Its BLAS must be OpenBLAS with POSIX threads, told to use one thread (sessions run
 # in parallel, see core/coupling/coupled_factor.cc): Debian's serial OpenBLAS is built without locks and, called from two

@@ -1,11 +1,19 @@
-// lipofilld: opens the store, serves until SIGTERM or SIGINT, stops gracefully.
+// lipofilld: opens the store, serves until SIGTERM or SIGINT, drains.
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
+#include "absl/strings/str_join.h"
+#include "server/ops/drain_guard.h"
 #include "server/ops/logging.h"
+#include "server/ops/metrics_server.h"
 #include "server/ops/options.h"
+#include "server/ops/process_figures.h"
+#include "server/ops/service_manager.h"
 #include "server/ops/signals.h"
+#include "server/rpc/backend_metrics.h"
 #include "server/rpc/grpc_server.h"
 #include "server/rpc/simulation_recovery.h"
 #include "server/store/data_directory.h"
@@ -44,7 +52,35 @@ BackendOptions backend_options(const Options& options) {
   return backend;
 }
 
+absl::StatusOr<std::unique_ptr<MetricsServer>> serve_metrics(const Options& options, Backend& backend) {
+  if (options.metrics_listen.empty()) return nullptr;
+  add_process_metrics(backend.metrics);
+  add_backend_metrics(backend, backend.metrics);
+  auto server = MetricsServer::start(options.metrics_listen, backend.metrics);
+  if (server.ok()) spdlog::info("metrics at {}, path /metrics (port {})", options.metrics_listen, (*server)->port());
+  return server;
+}
+
+absl::Status serve_until_signal(const Options& options, const Backend& backend, const GrpcServer& server) {
+  if (!options.port_file.empty()) {
+    if (auto written = write_port(options.port_file, server.port()); !written.ok()) return written;
+  }
+  const std::string where = absl::StrJoin(options.listen, ", ");
+  spdlog::info("lipofilld serves {} (port {}) with {} workers, data in {}", where, server.port(), options.workers,
+               options.data);
+  const ServiceManager manager;
+  manager.tell_ready("serving " + where);
+  const int signal = wait_for_signal(manager.watchdog_period(), [&backend, &manager] {
+    backend.check_alive();
+    manager.tell_alive();
+  });
+  spdlog::info("signal {}: draining", signal);
+  manager.tell_stopping();
+  return absl::OkStatus();
+}
+
 absl::Status serve(const Options& options) {
+  std::optional<DrainGuard> guard;  // first: it outlasts all that must end
   const auto data = DataDirectory::open(options.data);
   if (!data.ok()) return data.status();
   const auto store = SqliteStore::open(data->database().string());
@@ -55,23 +91,20 @@ absl::Status serve(const Options& options) {
   if (!checkpoints.ok()) return checkpoints.status();
   sweep_files(**store, *files, *checkpoints);
 
-  Backend backend(backend_options(options), **store, *files, *checkpoints);
+  Metrics metrics;
+  Backend backend(backend_options(options), **store, *files, *checkpoints, metrics);
   if (auto back = bring_back_simulations(backend); !back.ok()) return back;
   const auto server = GrpcServer::start(options.listen, backend);
   if (!server.ok()) return server.status();
-  if (!options.port_file.empty()) {
-    if (auto written = write_port(options.port_file, (*server)->port()); !written.ok()) {
-      (*server)->stop();
-      return written;
-    }
-  }
-  spdlog::info("lipofilld serves {} (port {}) with {} workers, data in {}", options.listen, (*server)->port(),
-               options.workers, options.data);
-  const int signal = wait_for_signal();
-  spdlog::info("signal {}: stopping", signal);
-  (*server)->stop();
+  const auto metrics_server = serve_metrics(options, backend);
+  const absl::Status served =
+      metrics_server.ok() ? serve_until_signal(options, backend, **server) : metrics_server.status();
+  guard.emplace(options.drain_timeout_s);
+  const bool drained =
+      (*server)->drain(GrpcServer::Seconds(options.drain_delay_s), GrpcServer::Seconds(options.drain_timeout_s));
   spdlog::info("stopped");
-  return absl::OkStatus();
+  if (!drained) std::_Exit(served.ok() ? 0 : 1);
+  return served;
 }
 
 }  // namespace
@@ -82,8 +115,8 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   const auto options = parse_options(argc, argv, exit_code);
   if (!options) return exit_code;
-  set_up_logging(options->log_level);
-  block_signals();
+  set_up_logging(options->log_level, options->log_format);
+  take_signals();
   try {
     const absl::Status served = serve(*options);
     if (served.ok()) return 0;

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "client/cli/interrupt.h"
@@ -23,15 +24,28 @@ bool is_program(const std::filesystem::path& file) {
   return std::filesystem::is_regular_file(file, error) && access(file.c_str(), X_OK) == 0;
 }
 
+/// The variables of this program but for those that set up a daemon of somebody else's or are between it and systemd.
+std::vector<char*> environment_to_hand_on() {
+  std::vector<char*> variables;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const absl::string_view text(*variable);
+    const bool of_a_daemon = absl::StartsWith(text, "LIPOFILLD_") || absl::StartsWith(text, "NOTIFY_SOCKET=") ||
+                             absl::StartsWith(text, "WATCHDOG_");
+    if (!of_a_daemon) variables.push_back(*variable);
+  }
+  variables.push_back(nullptr);
+  return variables;
+}
+
 /// In the child; only async-signal-safe calls.
-[[noreturn]] void become(char* const* arguments, int log, pid_t parent, bool detached) {
+[[noreturn]] void become(char* const* arguments, char* const* environment, int log, pid_t parent, bool detached) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(127);
   if (detached) setpgid(0, 0);
   restore_signals_in_child();
   dup2(log, STDOUT_FILENO);
   dup2(log, STDERR_FILENO);
-  execv(arguments[0], arguments);
+  execve(arguments[0], arguments, environment);
   _exit(127);
 }
 
@@ -60,9 +74,10 @@ absl::StatusOr<pid_t> start_process(const std::vector<std::string>& command, con
   arguments.push_back(nullptr);
   const int log_file = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (log_file < 0) return absl::InternalError(absl::StrCat("cannot write ", log.string(), ": ", std::strerror(errno)));
+  const std::vector<char*> environment = environment_to_hand_on();
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child == 0) become(arguments.data(), log_file, parent, detached);
+  if (child == 0) become(arguments.data(), environment.data(), log_file, parent, detached);
   const int fork_error = errno;
   close(log_file);
   if (child < 0) return absl::InternalError(absl::StrCat("cannot start ", command[0], ": ", std::strerror(fork_error)));

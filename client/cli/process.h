@@ -17,7 +17,8 @@ std::filesystem::path find_program(const std::string& name);
 std::filesystem::path this_program();
 
 /// Starts a program with its output going to a file, in a process group of its own when `detached` (the terminal's
-/// Ctrl-C then does not reach it). It is sent SIGTERM when this program dies in whatever way.
+/// Ctrl-C then does not reach it). It is sent SIGTERM when this program dies in whatever way. Variables that
+/// set up a daemon (LIPOFILLD_...) are not handed on.
 absl::StatusOr<pid_t> start_process(const std::vector<std::string>& command, const std::filesystem::path& log,
                                     bool detached);
 

@@ -36,7 +36,8 @@ absl::Status status_of(const grpc::Status& status, const std::string& server) {
   if (!wire.ParseFromString(status.error_details()) || wire.details_size() == 0) wire.Clear();
   wire.set_code(static_cast<int>(status.error_code()));
   wire.set_message(status.error_message());
-  if (status.error_code() == grpc::StatusCode::UNAVAILABLE) {
+  const bool from_daemon = wire.details_size() > 0;  // it answers, and says why it does not do it
+  if (status.error_code() == grpc::StatusCode::UNAVAILABLE && !from_daemon) {
     wire.set_message(absl::StrCat("no daemon answers at ", server, "; start lipofilld or use --spawn (",
                                   status.error_message(), ")"));
   } else if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) {

@@ -2,7 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
+#include <iostream>
 #include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "server/ops/listen_address.h"
 
 namespace lipofill::server {
 namespace {
@@ -13,73 +18,190 @@ constexpr char kDescription[] =
     "Clients (lipofill, planning GUIs, scripts) drive it over gRPC. A research and planning aid, not a medical device.";
 
 constexpr char kFooter[] =
+    "Every option can also stand in the file of --config (max-simulations = 8) and in the environment\n"
+    "(LIPOFILLD_MAX_SIMULATIONS=8). The command line wins over the environment, the environment over the file.\n"
+    "\n"
     "Examples:\n"
     "  lipofilld --data ~/lipofill                       serve on 127.0.0.1:50061\n"
     "  lipofilld --listen 127.0.0.1:0 --port-file port   take a free port and write it to the file, for scripts\n"
-    "  lipofilld --listen 0.0.0.0:50061                  serve the network; there is no encryption yet: trusted "
-    "networks only\n"
+    "  lipofilld --listen unix:/run/lipofill.sock        serve this machine's users who may write to the socket\n"
+    "  lipofilld --config /etc/lipofill/lipofilld.toml --check\n"
+    "                                                    say what is set, and what is wrong with it\n"
     "\n"
-    "SIGTERM and SIGINT stop it gracefully. However it ends, the next start on the same data brings every simulation "
-    "back "
-    "and goes on with those that ran.";
+    "SIGTERM and SIGINT drain it: it takes no new work, tells viewers, keeps the state of simulations, and ends with "
+    "0. "
+    "However\nit ends, the next start on the same data brings every simulation back and goes on with those that ran.";
 
-}  // namespace
+struct CommandLine {
+  GivenValues given;
+  std::string config;
+  bool check = false;
+};
 
-std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
-  Options options;
-  options.workers = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+std::string configuration_file(const CLI::Option& option) {
+  if (option.count() > 0) return option.results().front();
+  const char* variable = std::getenv("LIPOFILLD_CONFIG");
+  return variable != nullptr ? variable : "";
+}
+
+CLI::Option* add_setting(CLI::App& app, const Setting& setting) {
+  const std::string flag = "--" + setting.name;
+  if (setting.is_switch()) return app.add_flag(flag)->description(setting.help);
+  CLI::Option* option = app.add_option(flag)->description(setting.help)->type_name(setting.value_name);
+  if (setting.is_list()) option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  const std::string value = setting.text();
+  if (value != "\"\"") option->default_str(value);
+  return option;
+}
+
+/// Without a value the program ends with `exit_code`.
+std::optional<CommandLine> read_command_line(int argc, char** argv, const std::vector<Setting>& settings,
+                                             int& exit_code) {
+  CommandLine line;
   CLI::App app(kDescription, "lipofilld");
   app.footer(kFooter);
   app.set_version_flag("--version", std::string("lipofilld " LIPOFILL_VERSION));
-  app.add_option("--listen", options.listen, "Address and port to serve; port 0 takes a free one")
-      ->type_name("HOST:PORT")
-      ->capture_default_str();
-  app.add_option("--data", options.data, "Directory of the store: patients, scans, models, results; made when missing")
-      ->type_name("DIR")
-      ->capture_default_str();
-  app.add_option("--workers", options.workers, "Threads that run simulations; default: the number of cores")
-      ->type_name("N")
-      ->check(CLI::Range(1, 256));
-  app.add_option("--max-simulations", options.max_simulations, "Simulations that may exist without having ended")
-      ->type_name("N")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
-  app.add_option("--max-viewers", options.max_viewers, "Streams of frames that may be open at once")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  app.add_option("--keepalive-s", options.keepalive_s, "A client silent for so long is asked whether it is there")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(0.1, 86400.0))
-      ->capture_default_str();
-  app.add_option("--keepalive-timeout-s", options.keepalive_timeout_s, "and dropped when it does not answer in so long")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(0.1, 86400.0))
-      ->capture_default_str();
-  app.add_option(
-         "--checkpoint-interval-s", options.checkpoint_interval_s,
-         "Seconds that a running simulation goes on before its state is kept again; 0: not until it is asked for")
-      ->type_name("S")
-      ->check(CLI::Range(0.0, 86400.0))
-      ->capture_default_str();
-  app.add_option("--checkpoints-kept", options.checkpoints_kept, "States kept of each running simulation, the newest")
-      ->type_name("N")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  app.add_option("--checkpoint-space-mb", options.checkpoint_space_mb, "What all kept states may take together")
-      ->type_name("MB")
-      ->check(CLI::Range(uint64_t{1}, uint64_t{100'000'000}))
-      ->capture_default_str();
-  app.add_option("--log-level", options.log_level, "trace, debug, info, warning, error or off")
-      ->type_name("LEVEL")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
-      ->capture_default_str();
-  app.add_option("--port-file", options.port_file, "Write the port to this file once the daemon serves")
-      ->type_name("PATH");
+  const CLI::Option* config =
+      app.add_option("--config")->description("File of settings, TOML; see deploy/lipofilld.toml")->type_name("PATH");
+  app.add_flag("--check", line.check, "Read all settings, say what they are or what is wrong with them, and end");
+  std::vector<CLI::Option*> options;
+  for (const Setting& setting : settings) options.push_back(add_setting(app, setting));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     exit_code = app.exit(error) == 0 ? 0 : 2;
+    return std::nullopt;
+  }
+  for (size_t i = 0; i < settings.size(); ++i) {
+    if (options[i]->count() > 0) line.given[settings[i].name] = {options[i]->results(), "--" + settings[i].name};
+  }
+  line.config = configuration_file(*config);
+  return line;
+}
+
+/// `over` wins over what is in `under`.
+void lay_over(GivenValues& under, const GivenValues& over) {
+  for (const auto& [name, value] : over) under[name] = value;
+}
+
+absl::StatusOr<GivenValues> collect(const CommandLine& line, const std::vector<Setting>& settings, Options& options) {
+  GivenValues given;
+  FieldViolations violations;
+  if (!line.config.empty()) {
+    auto file = read_settings_file(line.config, settings);
+    if (file.ok()) given = *std::move(file);
+    violations.absorb("", file.status());
+  }
+  lay_over(given, read_settings_environment(settings));
+  lay_over(given, line.given);
+  assign_settings(settings, given, violations);
+  violations.absorb("", check_options(options));
+  if (!violations.empty()) return violations.to_status();
+  return given;
+}
+
+void print_settings(const std::vector<Setting>& settings, const GivenValues& given) {
+  std::cout << "# The configuration is good.\n";
+  for (const Setting& setting : settings) {
+    const auto found = given.find(setting.name);
+    std::cout << setting.name << " = " << setting.text() << "  # "
+              << (found == given.end() ? "default" : found->second.source) << "\n";
+  }
+}
+
+void check_listen(const Options& options, FieldViolations& violations) {
+  for (const std::string& text : options.listen) {
+    const auto address = parse_listen_address(text);
+    if (!address.ok()) {
+      violations.add("listen", absl::StrCat("is \"", text, "\": ", std::string(address.status().message())));
+    } else if (!address->is_local() && !options.insecure_listen_anywhere) {
+      violations.add("listen", absl::StrCat("is \"", text,
+                                            "\", which others on the network reach: without encryption "
+                                            "it must be a loopback address or a UNIX socket, or be told "
+                                            "insecure-listen-anywhere"));
+    }
+  }
+}
+
+}  // namespace
+
+Options::Options() : workers(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u))) {}
+
+std::vector<Setting> settings_of(Options& options) {
+  return {
+      {"listen", "ADDRESS", "HOST:PORT (port 0 takes a free one) or unix:PATH to serve; can be given several times",
+       &options.listen},
+      {"insecure-listen-anywhere", "", "Serve without encryption on addresses that others on the network reach",
+       &options.insecure_listen_anywhere},
+      {"port-file", "PATH", "Write the first TCP port to this file once the daemon serves", &options.port_file},
+      {"metrics-listen", "HOST:PORT", "Serve Prometheus metrics over HTTP, path /metrics; default: nowhere",
+       &options.metrics_listen},
+      {"data", "DIR", "Directory of the store: patients, scans, models, results; made when missing", &options.data},
+      {"workers", "N", "Threads that run simulations; default: the number of cores", &options.workers, 1, 256},
+      {"max-simulations", "N", "Simulations that may exist without having ended", &options.max_simulations, 1, 100000},
+      {"max-viewers", "N", "Streams of frames that may be open at once", &options.max_viewers, 1, 1e6},
+      {"keepalive-s", "SECONDS", "A client silent for so long is asked whether it is there", &options.keepalive_s, 0.1,
+       86400},
+      {"keepalive-timeout-s", "SECONDS", "and dropped when it does not answer in so long", &options.keepalive_timeout_s,
+       0.1, 86400},
+      {"checkpoint-interval-s", "SECONDS",
+       "Seconds that a running simulation goes on before its state is kept again; 0: not until it is asked for",
+       &options.checkpoint_interval_s, 0, 86400},
+      {"checkpoints-kept", "N", "States kept of each running simulation, the newest", &options.checkpoints_kept, 1,
+       100},
+      {"checkpoint-space-mb", "MB", "What all kept states may take together", &options.checkpoint_space_mb, 1, 1e8},
+      {"drain-delay-s", "SECONDS",
+       "After SIGTERM, say NOT_SERVING and go on for this long, so that load balancers notice", &options.drain_delay_s,
+       0, 600},
+      {"drain-timeout-s", "SECONDS", "After SIGTERM, end within this time whatever is still under way",
+       &options.drain_timeout_s, 1, 3600},
+      {.name = "log-level",
+       .value_name = "LEVEL",
+       .help = "trace, debug, info, warning, error or off",
+       .target = &options.log_level,
+       .choices = {"trace", "debug", "info", "warning", "error", "off"}},
+      {.name = "log-format",
+       .value_name = "FORMAT",
+       .help = "text, or json: one object a line",
+       .target = &options.log_format,
+       .choices = {"text", "json"}},
+  };
+}
+
+absl::Status check_options(const Options& options) {
+  FieldViolations violations;
+  check_listen(options, violations);
+  if (options.drain_delay_s >= options.drain_timeout_s) {
+    violations.add("drain-delay-s", absl::StrCat("is ", options.drain_delay_s, ", must be below drain-timeout-s, ",
+                                                 options.drain_timeout_s));
+  }
+  if (options.data.empty()) violations.add("data", "is empty, must be a directory");
+  if (!options.metrics_listen.empty()) {
+    const auto address = parse_listen_address(options.metrics_listen);
+    if (!address.ok() || address->is_unix()) {
+      violations.add("metrics-listen", absl::StrCat("is \"", options.metrics_listen, "\", must be HOST:PORT"));
+    }
+  }
+  return violations.to_status();
+}
+
+std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
+  Options options;
+  const std::vector<Setting> settings = settings_of(options);
+  const auto line = read_command_line(argc, argv, settings, exit_code);
+  if (!line) return std::nullopt;
+  const auto given = collect(*line, settings, options);
+  if (!given.ok()) {
+    std::cerr << "lipofilld: the configuration cannot be used\n";
+    for (const FieldViolation& violation : field_violations_of(given.status())) {
+      std::cerr << "  " << violation.field << ": " << violation.description << "\n";
+    }
+    exit_code = 2;
+    return std::nullopt;
+  }
+  if (line->check) {
+    print_settings(settings, *given);
+    exit_code = 0;
     return std::nullopt;
   }
   return options;

@@ -3,12 +3,20 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "server/ops/settings.h"
 
 namespace lipofill::server {
 
-/// What the command line says.
+/// How the daemon is set up.
 struct Options {
-  std::string listen = "127.0.0.1:50061";
+  Options();
+
+  std::vector<std::string> listen = {"127.0.0.1:50061"};
+  bool insecure_listen_anywhere = false;
+  std::string port_file;
+  std::string metrics_listen;  ///< empty: no metrics over HTTP
   std::string data = "lipofill-data";
   int workers = 1;
   int max_simulations = 64;
@@ -18,12 +26,22 @@ struct Options {
   double checkpoint_interval_s = 10.0;
   int checkpoints_kept = 3;
   uint64_t checkpoint_space_mb = 8192;
+  double drain_delay_s = 0.0;
+  double drain_timeout_s = 30.0;
   std::string log_level = "info";
-  std::string port_file;
+  std::string log_format = "text";
 };
 
-/// Reads the command line. Without a value the program ends with `exit_code`: after --help, --version (0) or a mistake
-/// (2).
+/// Every setting there is. A new one is a member of Options and an entry here: the file, the environment, the command
+/// line, --help and --check follow.
+std::vector<Setting> settings_of(Options& options);
+
+/// What is wrong with values that are well formed each by itself. OK or field violations.
+absl::Status check_options(const Options& options);
+
+/// Reads --config's file, the environment and the command line; what comes later wins. Without a value the program ends
+/// with `exit_code`: after --help, --version or --check (0), or a mistake (2), all of them named on standard error.
+/// Checked by tests/integration/service/configuration_test.cc.
 std::optional<Options> parse_options(int argc, char** argv, int& exit_code);
 
 }  // namespace lipofill::server

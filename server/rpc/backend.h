@@ -5,6 +5,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "server/ops/metrics.h"
 #include "server/rpc/courier.h"
 #include "server/rpc/result_keeper.h"
 #include "server/sessions/model_cache.h"
@@ -31,19 +32,22 @@ struct BackendOptions {
 
 /// What the services share.
 struct Backend {
-  Backend(const BackendOptions& the_options, Store& the_store, ScanFiles& scans, CheckpointFiles& checkpoints)
+  Backend(const BackendOptions& the_options, Store& the_store, ScanFiles& scans, CheckpointFiles& checkpoints,
+          Metrics& the_metrics)
       : options(the_options),
         store(the_store),
         scan_files(scans),
         checkpoint_files(checkpoints),
+        metrics(the_metrics),
         sessions(options.max_simulations),
-        keeper(the_store, checkpoints, sessions, options.checkpoints),
+        keeper(the_store, checkpoints, sessions, options.checkpoints, the_metrics),
         workers(options.workers) {}
 
   const BackendOptions options;
   Store& store;
   ScanFiles& scan_files;
   CheckpointFiles& checkpoint_files;
+  Metrics& metrics;
   std::atomic<bool> stopping = false;
   ModelCache models{8};
   Operations operations;
@@ -58,6 +62,9 @@ struct Backend {
   /// The model of a record, from memory or built again from its specification and scan. DATA_LOSS when what is built is
   /// not what the record says.
   absl::StatusOr<ModelCache::Model> load_model(const std::string& name);
+
+  /// Takes the locks that the daemon's threads share, and returns only if it gets them: a sign of life.
+  void check_alive() const;
 };
 
 }  // namespace lipofill::server

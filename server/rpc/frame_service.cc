@@ -6,6 +6,7 @@
 #include "core/base/field_violations.h"
 #include "server/rpc/names.h"
 #include "server/rpc/unary.h"
+#include "server/sessions/draining.h"
 
 namespace lipofill::server {
 namespace {
@@ -16,7 +17,6 @@ absl::StatusOr<v1::WatchRequest> parse_request(const grpc::ByteBuffer& bytes) {
   if (!grpc::GenericDeserialize<grpc::ProtoBufferReader, v1::WatchRequest>(&copy, &request).ok()) {
     return absl::InvalidArgumentError("the request is no lipofill.v1.WatchRequest");
   }
-  if (const absl::Status valid = check_message(request); !valid.ok()) return valid;
   return request;
 }
 
@@ -86,29 +86,31 @@ absl::StatusOr<ViewerOptions> to_viewer_options(const v1::WatchRequest& request)
 
 }  // namespace
 
-grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameService::Watch(grpc::CallbackServerContext*,
+grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameService::Watch(grpc::CallbackServerContext* context,
                                                                 const grpc::ByteBuffer* request) {
   std::shared_ptr<WatchStream> stream;
-  const absl::Status begun = guarded([&] { return begin(*request, stream); });
+  const absl::Status begun = guarded([&] { return begin(context, *request, stream); });
   if (!begun.ok()) {
-    stream = std::make_shared<WatchStream>(backend_.courier, "");
+    stream = std::make_shared<WatchStream>(backend_.courier, backend_.metrics, "");
     stream->begin_failed(begun);
   }
   return stream.get();  // it holds itself until gRPC is done with it
 }
 
-absl::Status FrameService::begin(const grpc::ByteBuffer& bytes, std::shared_ptr<WatchStream>& stream) {
+absl::Status FrameService::begin(grpc::CallbackServerContext* context, const grpc::ByteBuffer& bytes,
+                                 std::shared_ptr<WatchStream>& stream) {
   const auto request = parse_request(bytes);
   if (!request.ok()) return request.status();
+  if (const absl::Status good = check_call(context, *request); !good.ok()) return good;
   const auto id = parse_simulation_name(request->simulation(), "simulation");
   if (!id.ok()) return id.status();
-  if (backend_.stopping) return absl::UnavailableError("the daemon is stopping");
   std::shared_ptr<void> place = take_place();
   if (place == nullptr) {
     return absl::ResourceExhaustedError(
         absl::StrCat("too many viewers are watching, the bound is ", backend_.options.max_viewers));
   }
-  stream = std::make_shared<WatchStream>(backend_.courier, request->known_topology_hash(), std::move(place));
+  stream = std::make_shared<WatchStream>(backend_.courier, backend_.metrics, request->known_topology_hash(),
+                                         std::move(place));
   if (const auto session = backend_.sessions.find(*id); session != nullptr) {
     return watch_session(*request, session, stream);
   }
@@ -131,13 +133,15 @@ absl::Status FrameService::watch_session(const v1::WatchRequest& request, const 
   });
   const std::string id = session->id();
   if (!request.viewer().empty()) viewers_.add(id, request.viewer(), viewer);
+  backend_.metrics.count_viewer_come();
   stream->begin(viewer, heartbeat_of(request), [this, session, viewer, id, name = request.viewer()] {
     viewers_.remove(id, name, viewer);
     session->unwatch(viewer);
+    backend_.metrics.count_viewer_gone();
   });
   session->watch(viewer);
   // The daemon may have begun to stop since the caller looked, and gone past this session.
-  if (backend_.stopping) viewer->close(absl::UnavailableError("the daemon is stopping"));
+  if (backend_.stopping) viewer->close(draining());
   return absl::OkStatus();
 }
 

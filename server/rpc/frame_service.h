@@ -26,7 +26,8 @@ class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<
                                              v1::AcknowledgeFrameResponse* response) override;
 
  private:
-  absl::Status begin(const grpc::ByteBuffer& bytes, std::shared_ptr<WatchStream>& stream);
+  absl::Status begin(grpc::CallbackServerContext* context, const grpc::ByteBuffer& bytes,
+                     std::shared_ptr<WatchStream>& stream);
   absl::Status watch_session(const v1::WatchRequest& request, const std::shared_ptr<Session>& session,
                              const std::shared_ptr<WatchStream>& stream);
   absl::Status watch_kept(const v1::WatchRequest& request, const std::string& id,

@@ -3,16 +3,27 @@
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/server_builder.h>
+#include <sys/stat.h>
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
+#include <thread>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "server/rpc/call_watcher.h"
+#include "server/rpc/method_rules.h"
+#include "server/sessions/draining.h"
+#include "spdlog/spdlog.h"
 
 namespace lipofill::server {
 namespace {
 
-constexpr auto kShutdownGrace = std::chrono::milliseconds(500);
+/// Of the time to drain, for calls under way; the rest is for work that was begun.
+constexpr double kShareForCalls = 0.25;
+constexpr GrpcServer::Seconds kMaxForCalls{5.0};
+constexpr GrpcServer::Seconds kToCutOff{1.0};
 
 int to_milliseconds(double seconds) {
   return static_cast<int>(std::lround(1e3 * seconds));
@@ -29,40 +40,92 @@ void set_channel_arguments(const BackendOptions& options, grpc::ServerBuilder& b
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 256);
 }
 
+absl::Status admit(const Backend& backend, const Call& call) {
+  if (backend.stopping && effect_of(call.method) == Effect::kBegins) return draining();
+  return absl::OkStatus();
+}
+
+void watch_calls(grpc::ServerBuilder& builder, Backend& backend) {
+  builder.SetContextAllocator(std::make_unique<CallContextAllocator>());
+  std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> watchers;
+  watchers.push_back(
+      std::make_unique<CallWatchers>(backend.metrics, [&backend](const Call& call) { return admit(backend, call); }));
+  builder.experimental().SetInterceptorCreators(std::move(watchers));
+}
+
+bool is_unix(const std::string& address) {
+  return absl::StartsWith(address, "unix:");
+}
+
+/// Made with whatever umask there is; it is for the daemon's user and group.
+void restrict_sockets(const std::vector<std::string>& addresses) {
+  for (const std::string& address : addresses) {
+    if (!is_unix(address)) continue;
+    const std::string rest = address.substr(5);
+    ::chmod((absl::StartsWith(rest, "//") ? rest.substr(2) : rest).c_str(), 0660);
+  }
+}
+
 }  // namespace
 
 GrpcServer::GrpcServer(Backend& backend)
     : backend_(backend), patients_(backend), operations_(backend), simulations_(backend), frames_(backend) {}
 
-absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::string& address, Backend& backend) {
+absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<std::string>& addresses,
+                                                              Backend& backend) {
   grpc::EnableDefaultHealthCheckService(true);
   // Named, so that the linker keeps the library.
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   std::unique_ptr<GrpcServer> self(new GrpcServer(backend));
   grpc::ServerBuilder builder;
   set_channel_arguments(backend.options, builder);
-  builder.AddListeningPort(address, grpc::InsecureServerCredentials(), &self->port_);
+  watch_calls(builder, backend);
+  std::vector<int> ports(addresses.size());
+  for (size_t i = 0; i < addresses.size(); ++i) {
+    builder.AddListeningPort(addresses[i], grpc::InsecureServerCredentials(), &ports[i]);
+  }
   builder.RegisterService(&self->patients_);
   builder.RegisterService(&self->operations_);
   builder.RegisterService(&self->simulations_);
   builder.RegisterService(&self->frames_);
   self->server_ = builder.BuildAndStart();
-  if (self->server_ == nullptr || self->port_ == 0) {
-    return absl::UnavailableError(absl::StrCat("cannot listen on ", address, "; is the port taken?"));
+  if (self->server_ == nullptr || std::count(ports.begin(), ports.end(), 0) > 0) {
+    return absl::UnavailableError(
+        absl::StrCat("cannot listen on ", absl::StrJoin(addresses, ", "), "; is the port taken?"));
+  }
+  restrict_sockets(addresses);
+  for (size_t i = addresses.size(); i-- > 0;) {
+    if (!is_unix(addresses[i])) self->port_ = ports[i];
   }
   return self;
 }
 
-void GrpcServer::stop() {
-  backend_.stopping = true;
+bool GrpcServer::drain(Seconds delay, Seconds timeout) {
   server_->GetHealthCheckService()->SetServingStatus(false);
-  backend_.sessions.suspend_all("the daemon stopped");
+  backend_.stopping = true;
+  std::this_thread::sleep_for(delay);
+  backend_.sessions.suspend_all();
+  spdlog::info("simulations are at rest");
   backend_.operations.stop();
-  server_->Shutdown(std::chrono::system_clock::now() + kShutdownGrace);
+  const Seconds for_calls = std::min(kMaxForCalls, kShareForCalls * (timeout - delay));
+  const std::future<void> calls_ended = end_calls(for_calls);
   backend_.builds.stop();
   backend_.calls.stop();
-  server_->Wait();
   backend_.workers.stop();
+  if (calls_ended.wait_for(for_calls + kToCutOff) == std::future_status::ready) return true;
+  spdlog::warn("clients that neither read nor leave are cut off");
+  return false;
+}
+
+// Shutdown() may never return: what a peer that is frozen does not take from its socket cannot be cancelled.
+std::future<void> GrpcServer::end_calls(Seconds grace) {
+  const auto deadline = std::chrono::system_clock::now() + std::chrono::duration_cast<std::chrono::milliseconds>(grace);
+  auto done = std::make_shared<std::promise<void>>();
+  std::thread([this, deadline, done] {
+    server_->Shutdown(deadline);
+    done->set_value();
+  }).detach();
+  return done->get_future();
 }
 
 }  // namespace lipofill::server

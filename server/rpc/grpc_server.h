@@ -2,8 +2,11 @@
 
 #include <grpcpp/server.h>
 
+#include <chrono>
+#include <future>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/rpc/backend.h"
@@ -14,21 +17,29 @@
 
 namespace lipofill::server {
 
-/// The services on a TCP port, with standard health and reflection.
+/// The services on TCP ports and UNIX sockets, with standard health and reflection. Every call passes CallWatchers.
 class GrpcServer {
  public:
-  /// @param address  host:port; port 0 takes a free one
-  /// UNAVAILABLE when the address cannot be listened on, also when another program already does.
-  static absl::StatusOr<std::unique_ptr<GrpcServer>> start(const std::string& address, Backend& backend);
+  /// @param addresses  host:port (port 0 takes a free one) or unix:path. Users of the socket's group may write to it.
+  /// UNAVAILABLE when one cannot be listened on, also when another program already does.
+  static absl::StatusOr<std::unique_ptr<GrpcServer>> start(const std::vector<std::string>& addresses, Backend& backend);
 
+  /// Of the first address on TCP; 0 when there is none.
   int port() const { return port_; }
 
-  /// In order: no new work, viewers' streams end with UNAVAILABLE, simulations stand still with their state kept, for
-  /// the next start to go on from, builds are cancelled, calls under way are answered or cut off.
-  void stop();
+  using Seconds = std::chrono::duration<double>;
+  /// Ends the service, in order: health turns NOT_SERVING and nothing new is taken; after `delay` viewers' streams end
+  /// with draining(), simulations stand still with their state kept, for the next start to go on from, builds are
+  /// cancelled, calls under way are answered or, after some seconds of `timeout`, cut off. Returns when all have ended;
+  /// within `timeout` but for work that does not look at the clock (a step, a build). False when gRPC still waits for
+  /// clients that neither read nor leave: all work is done, but the program must end without destroying the server.
+  /// Checked by tests/integration/service/drain_test.cc.
+  bool drain(Seconds delay, Seconds timeout);
 
  private:
   explicit GrpcServer(Backend& backend);
+  /// Ready when the last call has ended; those that have not within `grace` are cancelled.
+  std::future<void> end_calls(Seconds grace);
 
   Backend& backend_;
   PatientService patients_;

@@ -97,10 +97,10 @@ std::vector<simulation::MeshTopology> make_model_meshes(const simulation::FaceMo
   return meshes;
 }
 
-grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend,
+grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend, grpc::CallbackServerContext* context,
                                                              const v1::DownloadModelMeshRequest& request) {
   auto* stream = new DownloadStream;
-  absl::Status valid = check_message(request);
+  absl::Status valid = check_call(context, request);
   valid.Update(parse_model_name(request.name(), "name").status());
   if (!valid.ok()) {
     stream->fail(valid);

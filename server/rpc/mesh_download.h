@@ -13,7 +13,7 @@ namespace lipofill::server {
 /// it has one, "scan".
 std::vector<simulation::MeshTopology> make_model_meshes(const simulation::FaceModel& model);
 
-grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend,
+grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend, grpc::CallbackServerContext* context,
                                                              const v1::DownloadModelMeshRequest& request);
 
 }  // namespace lipofill::server

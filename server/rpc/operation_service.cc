@@ -73,7 +73,7 @@ OperationService::Reactor* OperationService::ListOperations(Context* context, co
 OperationService::Reactor* OperationService::WaitOperation(Context* context, const v1::WaitOperationRequest* request,
                                                            v1::Operation* response) {
   Reactor* reactor = context->DefaultReactor();
-  absl::Status valid = check_message(*request);
+  absl::Status valid = check_call(context, *request);
   const auto id = parse_operation_name(request->name(), "name");
   valid.Update(id.status());
   const auto timeout = read_timeout(*request);

@@ -141,8 +141,8 @@ PatientService::Reactor* PatientService::CreateScan(Context* context, const v1::
   });
 }
 
-grpc::ServerReadReactor<v1::UploadScanRequest>* PatientService::UploadScan(Context*, v1::Scan* response) {
-  return uploads_.upload(response);
+grpc::ServerReadReactor<v1::UploadScanRequest>* PatientService::UploadScan(Context* context, v1::Scan* response) {
+  return uploads_.upload(context, response);
 }
 
 PatientService::Reactor* PatientService::GetScan(Context* context, const v1::GetScanRequest* request,
@@ -236,8 +236,8 @@ PatientService::Reactor* PatientService::DeleteModel(Context* context, const v1:
 }
 
 grpc::ServerWriteReactor<v1::MeshSlice>* PatientService::DownloadModelMesh(
-    Context*, const v1::DownloadModelMeshRequest* request) {
-  return download_model_mesh(backend_, *request);
+    Context* context, const v1::DownloadModelMeshRequest* request) {
+  return download_model_mesh(backend_, context, *request);
 }
 
 }  // namespace lipofill::server

@@ -1,6 +1,7 @@
 #include "server/rpc/result_keeper.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "absl/strings/str_cat.h"
 #include "lipofill/v1/simulation_service.pb.h"
@@ -62,11 +63,26 @@ absl::StatusOr<uint64_t> ResultKeeper::begin_epoch(const std::string& id) {
   return store_.begin_epoch(id, now_us());
 }
 
-// The file first: a record whose file is not there is never seen; a file without a record is swept.
 absl::StatusOr<CheckpointRecord> ResultKeeper::keep_checkpoint(const CheckpointRecord& draft,
                                                                const std::string& snapshot,
                                                                const std::vector<SeriesEntry>& rows,
                                                                const RequestKey& request) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point began = Clock::now();
+  auto written = write_checkpoint(draft, snapshot, rows, request);
+  if (written.ok()) {
+    metrics_.count_checkpoint(std::chrono::duration<double>(Clock::now() - began).count(), written->size_bytes);
+  } else {
+    metrics_.count_failed_checkpoint();
+  }
+  return written;
+}
+
+// The file first: a record whose file is not there is never seen; a file without a record is swept.
+absl::StatusOr<CheckpointRecord> ResultKeeper::write_checkpoint(const CheckpointRecord& draft,
+                                                                const std::string& snapshot,
+                                                                const std::vector<SeriesEntry>& rows,
+                                                                const RequestKey& request) {
   const auto simulation = store_.get_simulation(draft.simulation);
   if (!simulation.ok()) return simulation.status();
   if (!absl::IsNotFound(store_.get_checkpoint(draft.simulation, draft.id).status())) {
@@ -131,6 +147,25 @@ absl::Status ResultKeeper::append_series(const std::string& id, const std::vecto
   return store_.append_series(id, to_chunk(rows));
 }
 
+void ResultKeeper::stepped(const SeriesEntry& entry) {
+  const simulation::StepCost& cost = entry.report.cost;
+  StepFigures step;
+  step.wall_s = 1e-3 * entry.wall_ms;
+  step.cpu_s = cost.times.total;
+  step.element_cpu_s = cost.times.element;
+  step.factor_cpu_s = cost.times.factor;
+  step.solve_cpu_s = cost.times.solve;
+  step.film_cpu_s = cost.times.film;
+  step.coupling_cpu_s = cost.times.coupling;
+  step.film_iterations = cost.film_iterations;
+  step.newton_iterations = cost.newton_iterations;
+  step.iterative_iterations = cost.iterative_iterations;
+  step.factorisations = cost.factorisations;
+  step.tissue_solves = cost.tissue_solves;
+  step.fallbacks = cost.fallbacks;
+  metrics_.count_step(step);
+}
+
 absl::Status ResultKeeper::ended(const std::string& id, const SessionView& view, const Topology& topology,
                                  const Frame& frame) {
   std::vector<std::string> meshes;
@@ -146,6 +181,7 @@ absl::Status ResultKeeper::ended(const std::string& id, const SessionView& view,
   if (!kept.ok()) return kept;
   tidy(id);
   sessions_.remove(id);
+  metrics_.count_ended_simulation(state_name(view.state));
   return kept;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "server/ops/metrics.h"
 #include "server/sessions/session_manager.h"
 #include "server/sessions/session_sink.h"
 #include "server/store/checkpoint_files.h"
@@ -19,12 +20,12 @@ struct CheckpointOptions {
 };
 
 /// Puts what sessions do and compute into the store, as messages of the wire schema, and lets go of sessions that have
-/// ended.
+/// ended. Counts what they do.
 class ResultKeeper : public SessionSink {
  public:
-  ResultKeeper(Store& store, CheckpointFiles& files, SessionManager& sessions, const CheckpointOptions& options)
-      : store_(store), files_(files), sessions_(sessions), options_(options) {}
-
+  ResultKeeper(Store& store, CheckpointFiles& files, SessionManager& sessions, const CheckpointOptions& options,
+               Metrics& metrics)
+      : store_(store), files_(files), sessions_(sessions), options_(options), metrics_(metrics) {}
   absl::StatusOr<bool> was_kept(const RequestKey& request) override;
   absl::StatusOr<bool> keep_command(const CommandRecord& command, const RequestKey& request) override;
   absl::StatusOr<bool> keep_injection(const CommandRecord& command, double start_s, const RequestKey& request) override;
@@ -36,6 +37,7 @@ class ResultKeeper : public SessionSink {
                                                    const std::vector<SeriesEntry>& rows,
                                                    const RequestKey& request) override;
   absl::Status append_series(const std::string& id, const std::vector<SeriesEntry>& rows) override;
+  void stepped(const SeriesEntry& entry) override;
   absl::Status ended(const std::string& id, const SessionView& view, const Topology& topology,
                      const Frame& frame) override;
 
@@ -45,12 +47,15 @@ class ResultKeeper : public SessionSink {
   absl::Status check_room(uint64_t bytes) const;
 
  private:
+  absl::StatusOr<CheckpointRecord> write_checkpoint(const CheckpointRecord& draft, const std::string& snapshot,
+                                                    const std::vector<SeriesEntry>& rows, const RequestKey& request);
   absl::Status check_number_asked(const std::string& simulation) const;
 
   Store& store_;
   CheckpointFiles& files_;
   SessionManager& sessions_;
   const CheckpointOptions options_;
+  Metrics& metrics_;
 };
 
 }  // namespace lipofill::server

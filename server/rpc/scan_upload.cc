@@ -44,8 +44,8 @@ absl::Status check_request(const v1::CreateScanRequest& request) {
 /// One call of UploadScan.
 class UploadStream : public grpc::ServerReadReactor<v1::UploadScanRequest> {
  public:
-  UploadStream(ScanUploads& uploads, Backend& backend, v1::Scan* response)
-      : uploads_(uploads), backend_(backend), response_(response) {
+  UploadStream(ScanUploads& uploads, Backend& backend, grpc::CallbackServerContext* context, v1::Scan* response)
+      : uploads_(uploads), backend_(backend), context_(context), response_(response) {
     StartRead(&chunk_);
   }
 
@@ -61,7 +61,7 @@ class UploadStream : public grpc::ServerReadReactor<v1::UploadScanRequest> {
 
  private:
   absl::Status take_chunk() {
-    if (const absl::Status valid = check_message(chunk_); !valid.ok()) return valid;
+    if (const absl::Status valid = check_call(context_, chunk_); !valid.ok()) return valid;
     if (!chunk_.name().empty() && name_.empty()) {
       const auto ids = parse_scan_name(chunk_.name(), "name");
       if (!ids.ok()) return ids.status();
@@ -100,6 +100,7 @@ class UploadStream : public grpc::ServerReadReactor<v1::UploadScanRequest> {
 
   ScanUploads& uploads_;
   Backend& backend_;
+  grpc::CallbackServerContext* const context_;
   v1::Scan* const response_;
   v1::UploadScanRequest chunk_;
   std::string name_;
@@ -214,8 +215,9 @@ absl::StatusOr<ScanRecord> ScanUploads::check_whole(const ScanRecord& record) {
   return whole;
 }
 
-grpc::ServerReadReactor<v1::UploadScanRequest>* ScanUploads::upload(v1::Scan* response) {
-  return new UploadStream(*this, backend_, response);
+grpc::ServerReadReactor<v1::UploadScanRequest>* ScanUploads::upload(grpc::CallbackServerContext* context,
+                                                                    v1::Scan* response) {
+  return new UploadStream(*this, backend_, context, response);
 }
 
 }  // namespace lipofill::server

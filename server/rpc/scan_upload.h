@@ -30,7 +30,7 @@ class ScanUploads {
   /// Once all bytes are here; may take seconds. INVALID_ARGUMENT for bytes that are not those announced or no surface.
   absl::StatusOr<ScanRecord> complete(const std::string& patient, const std::string& scan);
 
-  grpc::ServerReadReactor<v1::UploadScanRequest>* upload(v1::Scan* response);
+  grpc::ServerReadReactor<v1::UploadScanRequest>* upload(grpc::CallbackServerContext* context, v1::Scan* response);
 
  private:
   absl::StatusOr<ScanRecord> check_whole(const ScanRecord& record);

@@ -8,6 +8,7 @@
 #include "server/rpc/simulation_conversion.h"
 #include "server/rpc/timestamps.h"
 #include "server/rpc/violation_prefix.h"
+#include "server/sessions/draining.h"
 #include "server/sessions/identifiers.h"
 #include "server/store/sqlite_store.h"
 #include "spdlog/spdlog.h"
@@ -99,7 +100,7 @@ absl::StatusOr<v1::Simulation> open_session(Backend& backend, SessionManager::Pl
   // From here on the model is held by the record, but it may have gone before that.
   absl::Status open = ids.ok() ? backend.store.get_model(ids->patient, ids->id).status() : ids.status();
   if (open.ok() && !backend.sessions.add(std::move(place), session)) {
-    open = absl::UnavailableError("the daemon is stopping");
+    open = draining();
   }
   if (!open.ok()) {
     delete_simulation_record(backend, record.id).IgnoreError();

@@ -50,8 +50,9 @@ Reactor* SimulationService::command(Context* context, const Request* request, v1
                                     const char* what, const Act& act) {
   Reactor* reactor = context->DefaultReactor();
   bool answered = false;
+  const LogScope scope(call_of(context).log_fields());
   const absl::Status done = guarded([&]() -> absl::Status {
-    if (const absl::Status valid = check_message(*request); !valid.ok()) return valid;
+    if (const absl::Status valid = check_call(context, *request); !valid.ok()) return valid;
     const auto id = parse_simulation_name(request->name(), "name");
     if (!id.ok()) return id.status();
     if (const absl::Status valid = check_request_id(request->request_id()); !valid.ok()) return valid;
@@ -80,7 +81,7 @@ Reactor* SimulationService::GetSimulation(Context* context, const v1::GetSimulat
                                           v1::Simulation* response) {
   const auto id = parse_simulation_name(request->name(), "name");
   const auto session = id.ok() ? backend_.sessions.find(*id) : nullptr;
-  if (session != nullptr && check_message(*request).ok()) {
+  if (session != nullptr && check_call(context, *request).ok()) {
     Reactor* reactor = context->DefaultReactor();
     session->inspect(reply_to(backend_, *id, reactor, response));
     return reactor;
@@ -141,7 +142,7 @@ Reactor* SimulationService::DeleteSimulation(Context* context, const v1::DeleteS
                                              google::protobuf::Empty*) {
   const auto id = parse_simulation_name(request->name(), "name");
   const auto session = id.ok() ? backend_.sessions.find(*id) : nullptr;
-  if (session != nullptr && check_message(*request).ok()) {
+  if (session != nullptr && check_call(context, *request).ok()) {
     Reactor* reactor = context->DefaultReactor();
     session->abandon(
         [this, id = *id] { return delete_simulation_record(backend_, id); },
@@ -240,8 +241,8 @@ Reactor* SimulationService::EvaluateSimulation(Context* context, const v1::Evalu
 }
 
 grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* SimulationService::ExportTissueDeck(
-    Context*, const v1::ExportTissueDeckRequest* request) {
-  return export_tissue_deck(backend_, *request);
+    Context* context, const v1::ExportTissueDeckRequest* request) {
+  return export_tissue_deck(backend_, context, *request);
 }
 
 }  // namespace lipofill::server

@@ -1,11 +1,24 @@
 #include "server/rpc/status_mapping.h"
 
+#include <google/protobuf/util/time_util.h>
+
+#include "core/base/error_hints.h"
 #include "core/base/field_violations.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/rpc/error_message.h"
 
 namespace lipofill::server {
+namespace {
+
+google::rpc::RetryInfo to_retry_info(double delay_s) {
+  google::rpc::RetryInfo info;
+  *info.mutable_retry_delay() =
+      google::protobuf::util::TimeUtil::MillisecondsToDuration(static_cast<int64_t>(1e3 * delay_s));
+  return info;
+}
+
+}  // namespace
 
 google::rpc::Status to_error_message(const absl::Status& status) {
   google::rpc::Status message;
@@ -13,10 +26,13 @@ google::rpc::Status to_error_message(const absl::Status& status) {
   message.set_message(std::string(status.message()));
   if (status.ok()) return message;
   const auto violations = field_violations_of(status);
+  const auto hints = hints_of(status);
   google::rpc::ErrorInfo info;
   info.set_domain("lipofill");
   info.set_reason(violations.empty() ? absl::StatusCodeToString(status.code()) : "FIELD_VIOLATION");
+  if (hints) info.set_reason(hints->reason);
   message.add_details()->PackFrom(info);
+  if (hints && hints->retry_delay_s) message.add_details()->PackFrom(to_retry_info(*hints->retry_delay_s));
   if (violations.empty()) return message;
   google::rpc::BadRequest bad_request;
   for (const FieldViolation& violation : violations) {

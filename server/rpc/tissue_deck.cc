@@ -97,9 +97,10 @@ absl::StatusOr<TimedDeck> make_deck(Backend& backend, const std::string& id) {
 }  // namespace
 
 grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* export_tissue_deck(Backend& backend,
+                                                                           grpc::CallbackServerContext* context,
                                                                            const v1::ExportTissueDeckRequest& request) {
   auto* stream = new DeckStream;
-  absl::Status valid = check_message(request);
+  absl::Status valid = check_call(context, request);
   const auto id = parse_simulation_name(request.name(), "name");
   valid.Update(id.status());
   if (!valid.ok()) {

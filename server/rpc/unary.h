@@ -10,6 +10,7 @@
 
 #include "absl/status/status.h"
 #include "server/rpc/backend.h"
+#include "server/rpc/call.h"
 #include "server/rpc/message_check.h"
 #include "server/rpc/status_mapping.h"
 
@@ -27,11 +28,20 @@ absl::Status guarded(Work&& work) {
   }
 }
 
+/// Whether a call is to be carried out with this request: admitted, and a message this schema knows. Every method
+/// begins with it.
+template <typename Request>
+absl::Status check_call(grpc::CallbackServerContext* context, const Request& request) {
+  const absl::Status& refusal = call_of(context).refusal;
+  return refusal.ok() ? check_message(request) : refusal;
+}
+
 /// Answers a call at once. `work` fills the response and returns a status.
 template <typename Request, typename Work>
 grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, const Request* request, Work&& work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  const absl::Status valid = check_message(*request);
+  const LogScope scope(call_of(context).log_fields());
+  const absl::Status valid = check_call(context, *request);
   reactor->Finish(to_grpc_status(valid.ok() ? guarded(work) : valid));
   return reactor;
 }
@@ -41,12 +51,14 @@ template <typename Request>
 grpc::ServerUnaryReactor* answer_later(grpc::CallbackServerContext* context, const Request* request, Backend& backend,
                                        std::function<absl::Status()> work) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  if (const absl::Status valid = check_message(*request); !valid.ok()) {
+  if (const absl::Status valid = check_call(context, *request); !valid.ok()) {
     reactor->Finish(to_grpc_status(valid));
     return reactor;
   }
-  const bool taken =
-      backend.calls.run([reactor, work = std::move(work)] { reactor->Finish(to_grpc_status(guarded(work))); });
+  const bool taken = backend.calls.run([reactor, work = std::move(work), fields = call_of(context).log_fields()] {
+    const LogScope scope(fields);
+    reactor->Finish(to_grpc_status(guarded(work)));
+  });
   if (!taken) {
     reactor->Finish(to_grpc_status(absl::ResourceExhaustedError("too many long calls are waiting, the bound is " +
                                                                 std::to_string(backend.calls.max_queued()))));

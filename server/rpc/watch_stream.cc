@@ -151,6 +151,7 @@ void WatchStream::queue_meshes(const std::shared_ptr<const EncodedMessages>& mes
 }
 
 void WatchStream::queue_frame(const std::shared_ptr<const EncodedMessages>& frame, uint64_t skipped) {
+  metrics_.count_frame_sent(skipped);
   for (const std::string& body : frame->messages) {
     const std::array<grpc::Slice, 2> slices = {grpc::Slice(frame_header(body.size(), skipped)), share(frame, body)};
     outgoing_.emplace_back(slices.data(), slices.size());

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 
+#include "server/ops/metrics.h"
 #include "server/rpc/courier.h"
 #include "server/rpc/frame_encoding.h"
 #include "server/rpc/kept_result.h"
@@ -27,8 +28,12 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
                     public std::enable_shared_from_this<WatchStream> {
  public:
   /// `place` is let go of when gRPC is done with the stream.
-  WatchStream(Courier& courier, std::string known_topology_hash, std::shared_ptr<void> place = nullptr)
-      : courier_(courier), known_topology_hash_(std::move(known_topology_hash)), place_(std::move(place)) {}
+  WatchStream(Courier& courier, Metrics& metrics, std::string known_topology_hash,
+              std::shared_ptr<void> place = nullptr)
+      : courier_(courier),
+        metrics_(metrics),
+        known_topology_hash_(std::move(known_topology_hash)),
+        place_(std::move(place)) {}
 
   /// A stream that shows what a session puts into the viewer, and a heartbeat where that was nothing for so long.
   /// `on_done` is called once, at the end.
@@ -53,6 +58,7 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   void queue_due_heartbeat();
 
   Courier& courier_;
+  Metrics& metrics_;
   const std::string known_topology_hash_;
   std::shared_ptr<void> place_;
   std::shared_ptr<WatchStream> self_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
+#include "server/sessions/draining.h"
 #include "server/sessions/identifiers.h"
 #include "server/sessions/thread_name.h"
 
@@ -44,7 +45,7 @@ Operations::Entry& Operations::add(const std::string& target, const RequestKey& 
 
 absl::StatusOr<Operations::Started> Operations::start(const std::string& target, const RequestKey& request) {
   const std::lock_guard lock(mutex_);
-  if (stopping_) return absl::UnavailableError("the daemon is stopping");
+  if (stopping_) return draining();
   if (const Entry* known = find_request(request); known != nullptr) {
     if (known->request.fingerprint == request.fingerprint) return Started{known->view, false};
     return absl::InvalidArgumentError(
@@ -135,7 +136,7 @@ void Operations::wait(const std::string& id, std::chrono::milliseconds timeout, 
   }
   if (stopping_) {
     lock.unlock();
-    return reply(absl::UnavailableError("the daemon is stopping"));
+    return reply(draining());
   }
   waiters_.push_back({id, Clock::now() + timeout, seen_progress, std::move(reply)});
   notify(std::move(lock));
@@ -204,7 +205,7 @@ void Operations::stop() {
   std::list<Waiter> waiters = std::exchange(waiters_, {});
   lock.unlock();
   changed_.notify_all();
-  for (const Waiter& waiter : waiters) waiter.reply(absl::UnavailableError("the daemon is stopping"));
+  for (const Waiter& waiter : waiters) waiter.reply(draining());
 }
 
 }  // namespace lipofill::server

@@ -5,6 +5,7 @@
 #include <new>
 
 #include "absl/strings/str_cat.h"
+#include "server/sessions/draining.h"
 #include "server/sessions/identifiers.h"
 #include "server/sessions/session.h"
 #include "spdlog/spdlog.h"
@@ -48,7 +49,7 @@ void Session::command(const char* what, std::vector<SimulationState> allowed, co
 }
 
 absl::Status Session::check_allowed(const char* what, const std::vector<SimulationState>& allowed) const {
-  if (suspended_) return absl::UnavailableError("the daemon is stopping");
+  if (suspended_) return draining();
   if (std::find(allowed.begin(), allowed.end(), view_.state) != allowed.end()) return absl::OkStatus();
   return absl::FailedPreconditionError(
       absl::StrCat("cannot ", what, ": simulations/", options_.id, " is ", state_name(view_.state)));

@@ -32,6 +32,7 @@ void Session::record_step(double wall_ms) {
     pending_.push_back({simulation_->report(), wall_ms});
     n_pending = pending_.size();
   }
+  sink_.stepped({simulation_->report(), wall_ms});
   if (n_pending % kSeriesChunk != 0) return;
   if (const absl::Status kept = flush_series(); !kept.ok()) {
     spdlog::error("simulations/{}: {} rows of its series wait: {}", options_.id, n_pending, kept.ToString());

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "server/sessions/draining.h"
 
 namespace lipofill::server {
 
@@ -15,7 +16,7 @@ SessionManager::Place::~Place() {
 
 absl::StatusOr<SessionManager::Place> SessionManager::reserve() {
   const std::lock_guard lock(mutex_);
-  if (stopping_) return absl::UnavailableError("the daemon is stopping");
+  if (stopping_) return draining();
   if (static_cast<int>(sessions_.size()) + reserved_ >= max_sessions_) {
     return absl::ResourceExhaustedError(absl::StrCat("there are ", sessions_.size(),
                                                      " simulations that have not ended, the bound is ", max_sessions_,
@@ -76,16 +77,22 @@ absl::Status SessionManager::checkpoint_all() {
   return ask_all([](Session& session, Session::Done done) { session.save(std::move(done)); });
 }
 
-void SessionManager::suspend_all(const std::string& reason) {
+void SessionManager::suspend_all() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
   // What could not be kept is in the log; the simulation then goes on from an earlier state.
-  ask_all([&reason](Session& session, Session::Done done) {
-    session.close_viewers(absl::UnavailableError(reason));
+  ask_all([](Session& session, Session::Done done) {
+    session.close_viewers(draining());
     session.suspend(std::move(done));
   }).IgnoreError();
+}
+
+std::vector<SessionView> SessionManager::cached_views() const {
+  std::vector<SessionView> views;
+  for (const auto& [id, session] : snapshot()) views.push_back(session->cached_view());
+  return views;
 }
 
 }  // namespace lipofill::server

@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/sessions/session.h"
@@ -30,7 +31,7 @@ class SessionManager {
     SessionManager* manager_;
   };
 
-  /// RESOURCE_EXHAUSTED naming the bound; UNAVAILABLE once suspend_all() was called.
+  /// RESOURCE_EXHAUSTED naming the bound; draining() once suspend_all() was called.
   absl::StatusOr<Place> reserve();
   /// False once suspend_all() was called.
   [[nodiscard]] bool add(Place place, std::shared_ptr<Session> session);
@@ -41,9 +42,11 @@ class SessionManager {
 
   /// Has every session keep its state; they go on meanwhile. Returns when all are done, with the first error.
   absl::Status checkpoint_all();
-  /// For the end of the daemon: takes no more sessions, ends viewers' streams with UNAVAILABLE and the reason, has
-  /// every session keep its state and take no step or command any more. Returns when all are done.
-  void suspend_all(const std::string& reason);
+  /// For the end of the daemon: takes no more sessions, ends viewers' streams with draining(), has every session keep
+  /// its state and take no step or command any more. Returns when all are done.
+  void suspend_all();
+  /// Figures of all, each as after its last step.
+  std::vector<SessionView> cached_views() const;
 
  private:
   std::map<std::string, std::shared_ptr<Session>> snapshot() const;

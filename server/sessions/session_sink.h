@@ -78,6 +78,8 @@ class SessionSink {
                                                            const std::vector<SeriesEntry>& rows,
                                                            const RequestKey& request) = 0;
   virtual absl::Status append_series(const std::string& id, const std::vector<SeriesEntry>& rows) = 0;
+  /// After every step, for figures of the daemon; must not block.
+  virtual void stepped(const SeriesEntry&) {}
   /// After this succeeds the session can be forgotten: the store knows all of it.
   virtual absl::Status ended(const std::string& id, const SessionView& view, const Topology& topology,
                              const Frame& frame) = 0;

@@ -27,6 +27,11 @@ bool TaskPool::run(std::function<void()> work) {
   return true;
 }
 
+size_t TaskPool::queue_depth() const {
+  const std::lock_guard lock(mutex_);
+  return queue_.size();
+}
+
 void TaskPool::stop() {
   {
     const std::lock_guard lock(mutex_);

@@ -21,13 +21,15 @@ class TaskPool {
   [[nodiscard]] bool run(std::function<void()> work);
   /// Carries out what is queued (whoever waits for an answer gets one), then joins. Idempotent.
   void stop();
+  /// What waits now.
+  size_t queue_depth() const;
   size_t max_queued() const { return max_queued_; }
 
  private:
   void work();
 
   const size_t max_queued_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> queue_;
   bool stopping_ = false;

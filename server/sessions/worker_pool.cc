@@ -24,6 +24,11 @@ void WorkerPool::schedule(std::shared_ptr<Task> task) {
   changed_.notify_one();
 }
 
+size_t WorkerPool::queue_depth() const {
+  const std::lock_guard lock(mutex_);
+  return ready_.size();
+}
+
 void WorkerPool::stop() {
   {
     const std::lock_guard lock(mutex_);

@@ -38,6 +38,8 @@ class WorkerPool {
   void schedule(std::shared_ptr<Task> task);
   /// Lets the turns at hand end, drops what is queued. Idempotent.
   void stop();
+  /// Tasks that wait for a turn now.
+  size_t queue_depth() const;
   int n_workers() const { return n_workers_; }
 
  private:
@@ -45,7 +47,7 @@ class WorkerPool {
   void move_due_tasks(Clock::time_point now);
 
   const int n_workers_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::shared_ptr<Task>> ready_;
   std::multimap<Clock::time_point, std::shared_ptr<Task>> later_;

@@ -67,6 +67,12 @@ TEST_F(RunTest, WritesWhatParaViewOpens) {
   EXPECT_EQ(tissue->GetOutput()->GetNumberOfCells(), 144);
 }
 
+TEST_F(RunTest, APrivateDaemonIsNotSetUpByTheEnvironmentOfAnother) {
+  const CommandResult result =
+      run("env LIPOFILLD_WORKERS=none LIPOFILLD_CONFIG=/none lipofill run plan.json --out out --spawn --no-picture");
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+}
+
 TEST_F(RunTest, SummaryAndSeriesAgreeAndTwoRunsAreTheSame) {
   const auto summary = answer_of("lipofill run plan.json --out a --spawn --no-picture --quiet");
   EXPECT_EQ(summary, read_json("a/summary.json"));

@@ -57,10 +57,11 @@ int exit_code_of(int status) {
 
 }  // namespace
 
-DaemonProcess::DaemonProcess(const std::string& data, const std::vector<std::string>& arguments) {
+DaemonProcess::DaemonProcess(const std::string& data, const std::vector<std::string>& arguments)
+    : log_file_(data + ".log") {
   const std::string port_file = data + ".port";
   std::filesystem::remove(port_file);
-  process_ = start(all_arguments(data, arguments), data + ".log");
+  process_ = start(all_arguments(data, arguments), log_file_);
   const Clock::time_point deadline = Clock::now() + std::chrono::seconds(30);
   while (port_ == 0 && running() && Clock::now() < deadline) {
     std::ifstream(port_file) >> port_;
@@ -68,7 +69,7 @@ DaemonProcess::DaemonProcess(const std::string& data, const std::vector<std::str
     if (::waitpid(process_, &status, WNOHANG) == process_) process_ = -1;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  EXPECT_NE(port_, 0) << "lipofilld does not serve:\n" << read_file(data + ".log");
+  EXPECT_NE(port_, 0) << "lipofilld does not serve:\n" << log();
 }
 
 void DaemonProcess::start_and_kill(const std::string& data, const std::vector<std::string>& arguments,
@@ -108,6 +109,10 @@ int DaemonProcess::terminate() {
 void DaemonProcess::kill_hard() {
   signal(SIGKILL);
   wait();
+}
+
+std::string DaemonProcess::log() const {
+  return read_file(log_file_);
 }
 
 int run_daemon_to_end(const std::vector<std::string>& arguments, std::string& output) {

@@ -33,8 +33,11 @@ class DaemonProcess {
   void kill_hard();
   bool running() const { return process_ > 0; }
   pid_t pid() const { return process_; }
+  /// What it has logged so far.
+  std::string log() const;
 
  private:
+  std::string log_file_;
   pid_t process_ = -1;
   int port_ = 0;
 };

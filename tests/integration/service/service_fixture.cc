@@ -221,6 +221,28 @@ v1::Simulation ServiceTest::await_end(const std::string& name) {
   return {};
 }
 
+grpc::Status ServiceTest::call_raw(const std::string& method, const std::string& bytes) {
+  grpc::GenericStub stub(channel_);
+  Context context;
+  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
+  grpc::CompletionQueue queue;
+  const auto wait = [&queue] {
+    void* tag = nullptr;
+    bool ok = false;
+    queue.Next(&tag, &ok);
+  };
+  auto stream = stub.PrepareCall(&context, method, &queue);
+  stream->StartCall(nullptr);
+  wait();
+  const grpc::Slice slice(bytes);
+  stream->WriteLast(grpc::ByteBuffer(&slice, 1), grpc::WriteOptions(), nullptr);
+  wait();
+  grpc::Status status;
+  stream->Finish(&status, nullptr);
+  wait();
+  return status;
+}
+
 bool ServiceTest::is_serving() {
   grpc::GenericStub stub(channel_);
   Context context;

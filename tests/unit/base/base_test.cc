@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/base/error_hints.h"
 #include "core/base/field_violations.h"
 #include "core/base/hash.h"
 
@@ -41,6 +42,17 @@ TEST(FieldViolations, AbsorbPutsThemBelowAPrefix) {
 TEST(FieldViolations, NothingWrongIsOk) {
   EXPECT_TRUE(FieldViolations().to_status().ok());
   EXPECT_TRUE(field_violations_of(absl::InternalError("other")).empty());
+}
+
+TEST(ErrorHints, TravelWithAStatus) {
+  const absl::Status status = with_hints(absl::UnavailableError("later"), {"DRAINING", 0.25});
+  EXPECT_EQ(status.message(), "later");
+  ASSERT_TRUE(hints_of(status));
+  EXPECT_EQ(hints_of(status)->reason, "DRAINING");
+  EXPECT_EQ(hints_of(status)->retry_delay_s, 0.25);
+  EXPECT_EQ(hints_of(with_hints(absl::InternalError(""), {"BROKEN", std::nullopt}))->retry_delay_s, std::nullopt);
+  EXPECT_FALSE(hints_of(absl::UnavailableError("later")));
+  EXPECT_TRUE(with_hints(absl::OkStatus(), {"FINE", 1.0}).ok());
 }
 
 TEST(Hasher, GivesTheDigestsOfFips180) {

@@ -129,7 +129,7 @@ TEST_F(SessionTest, TheManagerBoundsAndStopsAll) {
   ASSERT_TRUE(manager.checkpoint_all().ok());
   ASSERT_EQ(sink_.checkpoints.size(), 1u);
   EXPECT_FALSE(viewer->closed());
-  manager.suspend_all("the daemon stopped");
+  manager.suspend_all();
   EXPECT_TRUE(viewer->closed());
   EXPECT_EQ(a->cached_view().state, SimulationState::kRunning) << "it is to go on";
   const uint64_t step = inspect(*a)->report.step;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/base/error_hints.h"
 #include "core/base/field_violations.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
@@ -32,6 +33,19 @@ TEST(StatusMapping, CarriesCodeMessageAndReason) {
   ASSERT_TRUE(details.details(0).UnpackTo(&info));
   EXPECT_EQ(info.domain(), "lipofill");
   EXPECT_EQ(info.reason(), "NOT_FOUND");
+}
+
+TEST(StatusMapping, SaysWhenToTryAgain) {
+  const absl::Status drained = with_hints(absl::UnavailableError("later"), {"DRAINING", 2.5});
+  const google::rpc::Status details = details_of(to_grpc_status(drained));
+  ASSERT_EQ(details.details_size(), 2);
+  google::rpc::ErrorInfo info;
+  ASSERT_TRUE(details.details(0).UnpackTo(&info));
+  EXPECT_EQ(info.reason(), "DRAINING");
+  google::rpc::RetryInfo retry;
+  ASSERT_TRUE(details.details(1).UnpackTo(&retry));
+  EXPECT_EQ(retry.retry_delay().seconds(), 2);
+  EXPECT_EQ(retry.retry_delay().nanos(), 500'000'000);
 }
 
 TEST(StatusMapping, CarriesFieldViolations) {

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+
+namespace lipofill {
+
+/// What an error says to programs beside its code: a word for the reason, and when it makes sense to try again.
+struct ErrorHints {
+  std::string reason;                   ///< "DRAINING"; upper case with underscores
+  std::optional<double> retry_delay_s;  ///< at the earliest
+};
+
+/// The status with hints. An OK status stays as it is. Checked by tests/unit/base/base_test.cc.
+absl::Status with_hints(absl::Status status, const ErrorHints& hints);
+
+/// The hints a status carries.
+std::optional<ErrorHints> hints_of(const absl::Status& status);
+
+}  // namespace lipofill

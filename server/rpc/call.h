@@ -1,0 +1,55 @@
+#pragma once
+
+#include <grpcpp/generic/async_generic_service.h>
+#include <grpcpp/server_context.h>
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "server/ops/logging.h"
+
+namespace lipofill::server {
+
+/// What the daemon knows of a call before its method is carried out.
+struct Call {
+  std::string method;      ///< "/lipofill.v1.PatientService/GetPatient"
+  std::string request_id;  ///< the client's x-request-id, or one that was made for it
+  std::string trace_id;    ///< of the client's W3C traceparent; empty without one
+  std::string parent_id;   ///< the client's span, the same way
+  /// Why it is not to be carried out; whatever answers calls looks here first.
+  absl::Status refusal;
+
+  /// What lines of the log say of it.
+  LogFields log_fields() const;
+};
+
+using Metadata = std::multimap<grpc::string_ref, grpc::string_ref>;
+
+/// Reads x-request-id (1 to 64 letters, digits, '.', '_', ':' and '-', else one is made) and traceparent (version 00,
+/// else ignored). Checked by tests/unit/server/call_test.cc.
+Call read_call(const std::string& method, const Metadata& metadata);
+
+/// The context of a call with what is known of it. Every call of a service of ours has one: see CallContextAllocator.
+class CallContext : public grpc::CallbackServerContext {
+ public:
+  Call call;
+};
+
+/// What is known of the call.
+const Call& call_of(grpc::CallbackServerContext* context);
+
+/// gRPC gives contexts back through the base class whoever made them, also those of calls to methods there are not
+/// (they are generic): all must come from here.
+class CallContextAllocator : public grpc::ContextAllocator {
+ public:
+  grpc::CallbackServerContext* NewCallbackServerContext() override { return new CallContext; }
+  grpc::GenericCallbackServerContext* NewGenericCallbackServerContext() override {
+    return new grpc::GenericCallbackServerContext;
+  }
+  void Release(grpc::CallbackServerContext* context) override { delete context; }
+  void Release(grpc::GenericCallbackServerContext* context) override { delete context; }
+};
+
+}  // namespace lipofill::server

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "absl/status/status.h"
+#include "core/base/error_hints.h"
+
+namespace lipofill::server {
+
+/// What whoever wants something new is told once the daemon drains, and viewers when their streams end: UNAVAILABLE,
+/// reason DRAINING, try again in a while, here or at another daemon.
+inline absl::Status draining() {
+  constexpr double retry_delay_s = 5.0;
+  return with_hints(absl::UnavailableError("the daemon is draining: it stops soon and takes nothing new"),
+                    {"DRAINING", retry_delay_s});
+}
+
+}  // namespace lipofill::server

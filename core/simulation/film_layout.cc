@@ -108,6 +108,12 @@ absl::StatusOr<Membership> make_membership(const FaceModel& model, const ZoneSpe
           return (geometry::skin_position(face.grid, p) - at).norm() <= r;
         });
   }
+  if (const auto* painted = std::get_if<PaintedRegion>(&zone.shape)) {
+    FieldViolations violations;
+    violations.absorb("painted", painted->cover.validate());
+    if (!violations.empty()) return violations.to_status();
+    return Membership([cover = painted->cover](const geometry::ChartPoint& p) { return cover.at(p.xi, p.eta) >= 0.5; });
+  }
   const auto placed = anatomy::place_region(face, std::get<NamedRegion>(zone.shape).name);
   if (!placed.ok()) {
     FieldViolations violations;

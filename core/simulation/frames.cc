@@ -70,8 +70,9 @@ std::vector<float> select_moved(const Eigen::Matrix3Xd& from, const Eigen::Matri
 /// The films as a frame shows them.
 struct Simulation::Impl::FilmsNow {
   std::vector<film::FilmMetric> metric;
-  std::vector<Eigen::VectorXd> thickness;                      ///< [m] (n_cells)
-  std::vector<const Eigen::VectorXd*> pressures, thicknesses;  ///< of each film
+  std::vector<Eigen::VectorXd> thickness;  ///< [m] (n_cells)
+  std::vector<Eigen::VectorXd> zone;       ///< of each cell, counted from 1 through the films in order
+  std::vector<const Eigen::VectorXd*> pressures, thicknesses, zones;  ///< of each film
 };
 
 Simulation::Impl::FilmsNow Simulation::Impl::measure_films() const {
@@ -80,9 +81,19 @@ Simulation::Impl::FilmsNow Simulation::Impl::measure_films() const {
     now.metric.push_back(stepper->film_metric(state, static_cast<int>(f)));
     now.thickness.emplace_back(state.films[f].volume.cwiseQuotient(now.metric[f].area));
   }
+  int zones_before = 0;
+  for (const FilmLayout& film : films) {
+    const std::vector<int>& of_cell = film.grid.zone_of_cell;
+    Eigen::VectorXd& zone = now.zone.emplace_back(static_cast<Eigen::Index>(of_cell.size()));
+    for (Eigen::Index cell = 0; cell < zone.size(); ++cell) {
+      zone[cell] = 1 + zones_before + of_cell[static_cast<size_t>(cell)];
+    }
+    zones_before += static_cast<int>(film.zone_names.size());
+  }
   for (size_t f = 0; f < films.size(); ++f) {
     now.pressures.push_back(&state.films[f].pressure);
     now.thicknesses.push_back(&now.thickness[f]);
+    now.zones.push_back(&now.zone[f]);
   }
   return now;
 }
@@ -137,6 +148,7 @@ void Simulation::Impl::add_skin_fields(const FrameLayout& layout, const Eigen::M
       {"skin", "pressure", "Pa", FieldLocation::kPoint, 1, look_below(layout.skin, n, 1.0, now.pressures)});
   fields.push_back({"skin", "thickness", "mm", FieldLocation::kPoint, 1,
                     look_below(layout.skin, n, kMillimetresPerMetre, now.thicknesses)});
+  fields.push_back({"skin", "zone", "", FieldLocation::kPoint, 1, look_below(layout.skin, n, 1.0, now.zones)});
 }
 
 /// @param n  vertices of the scan
@@ -145,6 +157,8 @@ void Simulation::Impl::add_scan_fields(const FrameLayout& layout, int n, const E
   fields.push_back({"scan", "displacement", "mm", FieldLocation::kPoint, 3, move(layout.scan, n, skin)});
   fields.push_back(
       {"scan", "pressure", "Pa", FieldLocation::kPoint, 1, look_below(layout.scan, n, 1.0, now.pressures)});
+  fields.push_back({"scan", "thickness", "mm", FieldLocation::kPoint, 1,
+                    look_below(layout.scan, n, kMillimetresPerMetre, now.thicknesses)});
 }
 
 void Simulation::Impl::add_film_fields(size_t f, const FilmsNow& now, std::vector<FrameField>& fields) const {

@@ -29,9 +29,14 @@ struct NamedRegion {
   std::string name;
 };
 
+/// Where a field over the chart, 1 inside and 0 outside, is at least a half.
+struct PaintedRegion {
+  geometry::ScalarField cover;
+};
+
 struct ZoneSpec {
   std::string name;
-  std::variant<ChartBox, Disc, NamedRegion> shape;
+  std::variant<ChartBox, Disc, NamedRegion, PaintedRegion> shape;
 };
 
 /// A wall of a film: a line through its zones, or where two of its zones touch.

@@ -21,25 +21,25 @@ Eigen::Vector3d read_vector(const v1::Vector3& message, double factor, const Fie
           reader.required(message.has_z(), message.z(), factor, "z")};
 }
 
+geometry::ScalarField read_samples(const v1::FieldSamples& message, double factor, const FieldReader& reader) {
+  geometry::ScalarField field;
+  field.n_xi = reader.required_count(true, message.n_xi(), "n_xi");
+  field.n_eta = reader.required_count(true, message.n_eta(), "n_eta");
+  field.values.assign(message.values().begin(), message.values().end());
+  for (double& value : field.values) value *= factor;
+  if (const absl::Status valid = field.validate(); !valid.ok()) {
+    for (const FieldViolation& violation : field_violations_of(valid)) reader.wrong_here(violation.description);
+    return geometry::ScalarField::constant(0.0);
+  }
+  return field;
+}
+
 geometry::ScalarField read_scalar_field(const v1::ScalarField& message, double factor, const FieldReader& reader) {
   switch (message.kind_case()) {
     case v1::ScalarField::kConstant:
       return geometry::ScalarField::constant(message.constant() * factor);
-    case v1::ScalarField::kSamples: {
-      const FieldReader samples = reader.below("samples");
-      geometry::ScalarField field;
-      field.n_xi = samples.required_count(true, message.samples().n_xi(), "n_xi");
-      field.n_eta = samples.required_count(true, message.samples().n_eta(), "n_eta");
-      field.values.assign(message.samples().values().begin(), message.samples().values().end());
-      for (double& value : field.values) value *= factor;
-      if (const absl::Status valid = field.validate(); !valid.ok()) {
-        for (const FieldViolation& violation : field_violations_of(valid)) {
-          reader.wrong("samples", violation.description);
-        }
-        return geometry::ScalarField::constant(0.0);
-      }
-      return field;
-    }
+    case v1::ScalarField::kSamples:
+      return read_samples(message.samples(), factor, reader.below("samples"));
     case v1::ScalarField::KIND_NOT_SET:
       break;
   }

@@ -27,6 +27,7 @@ class FieldReader {
     violations_.add(path(field), description);
   }
   const std::string& here() const { return path_; }
+  void wrong_here(const std::string& description) const { violations_.add(path_, description); }
   void missing_here() const { violations_.add(path_, "is missing"); }
 
   /// The value times `factor`, or 0 with a violation.
@@ -44,6 +45,7 @@ class FieldReader {
 constexpr double kMetrePerMillimetre = 1e-3;
 
 Eigen::Vector3d read_vector(const v1::Vector3& message, double factor, const FieldReader& reader);
+geometry::ScalarField read_samples(const v1::FieldSamples& message, double factor, const FieldReader& reader);
 geometry::ScalarField read_scalar_field(const v1::ScalarField& message, double factor, const FieldReader& reader);
 geometry::SkinPoint read_skin_point(const v1::SkinPoint& message, const FieldReader& reader);
 

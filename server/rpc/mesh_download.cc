@@ -1,7 +1,11 @@
 #include "server/rpc/mesh_download.h"
 
+#include <functional>
+#include <utility>
+
 #include "server/rpc/frame_encoding.h"
 #include "server/rpc/names.h"
+#include "server/rpc/scan_reading.h"
 #include "server/rpc/unary.h"
 
 namespace lipofill::server {
@@ -78,14 +82,53 @@ class DownloadStream : public grpc::ServerWriteReactor<v1::MeshSlice> {
   size_t sent_ = 0;
 };
 
-absl::StatusOr<std::vector<v1::MeshSlice>> make_slices(Backend& backend, const std::string& name) {
-  const auto model = backend.load_model(name);
-  if (!model.ok()) return model.status();
+using Slices = absl::StatusOr<std::vector<v1::MeshSlice>>;
+
+std::vector<v1::MeshSlice> slice_all(std::vector<simulation::MeshTopology> meshes) {
   Topology topology;
-  topology.meshes = make_model_meshes(**model);
+  topology.meshes = std::move(meshes);
   std::vector<std::string> all;
   for (const auto& mesh : topology.meshes) all.push_back(mesh.name);
   return slice_meshes(to_whole_meshes(topology, all));
+}
+
+Slices slice_model(Backend& backend, const std::string& name) {
+  const auto model = backend.load_model(name);
+  if (!model.ok()) return model.status();
+  return slice_all(make_model_meshes(**model));
+}
+
+Slices slice_scan(Backend& backend, const std::string& name) {
+  const auto ids = parse_scan_name(name, "name");
+  if (!ids.ok()) return ids.status();
+  const auto surface = read_scan_surface(backend, ids->patient, ids->id);
+  if (!surface.ok()) return surface.status();
+  return slice_all({make_scan(*surface)});
+}
+
+/// Makes the slices on a thread for long calls and sends them, or says why it cannot.
+grpc::ServerWriteReactor<v1::MeshSlice>* send_slices(Backend& backend, const absl::Status& valid,
+                                                     std::function<Slices()> make) {
+  auto* stream = new DownloadStream;
+  if (!valid.ok()) {
+    stream->fail(valid);
+    return stream;
+  }
+  const bool taken = backend.calls.run([stream, make = std::move(make)] {
+    std::vector<v1::MeshSlice> slices;
+    const absl::Status made = guarded([&]() -> absl::Status {
+      auto all = make();
+      if (all.ok()) slices = *std::move(all);
+      return all.status();
+    });
+    if (made.ok()) {
+      stream->send(std::move(slices));
+    } else {
+      stream->fail(made);
+    }
+  });
+  if (!taken) stream->fail(absl::ResourceExhaustedError("too many long calls are waiting"));
+  return stream;
 }
 
 }  // namespace
@@ -99,28 +142,16 @@ std::vector<simulation::MeshTopology> make_model_meshes(const simulation::FaceMo
 
 grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend, grpc::CallbackServerContext* context,
                                                              const v1::DownloadModelMeshRequest& request) {
-  auto* stream = new DownloadStream;
   absl::Status valid = check_call(context, request);
   valid.Update(parse_model_name(request.name(), "name").status());
-  if (!valid.ok()) {
-    stream->fail(valid);
-    return stream;
-  }
-  const bool taken = backend.calls.run([&backend, stream, name = request.name()] {
-    std::vector<v1::MeshSlice> slices;
-    const absl::Status made = guarded([&]() -> absl::Status {
-      auto all = make_slices(backend, name);
-      if (all.ok()) slices = *std::move(all);
-      return all.status();
-    });
-    if (made.ok()) {
-      stream->send(std::move(slices));
-    } else {
-      stream->fail(made);
-    }
-  });
-  if (!taken) stream->fail(absl::ResourceExhaustedError("too many long calls are waiting"));
-  return stream;
+  return send_slices(backend, valid, [&backend, name = request.name()] { return slice_model(backend, name); });
+}
+
+grpc::ServerWriteReactor<v1::MeshSlice>* download_scan_mesh(Backend& backend, grpc::CallbackServerContext* context,
+                                                            const v1::DownloadScanMeshRequest& request) {
+  absl::Status valid = check_call(context, request);
+  valid.Update(parse_scan_name(request.name(), "name").status());
+  return send_slices(backend, valid, [&backend, name = request.name()] { return slice_scan(backend, name); });
 }
 
 }  // namespace lipofill::server

@@ -16,4 +16,8 @@ std::vector<simulation::MeshTopology> make_model_meshes(const simulation::FaceMo
 grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend, grpc::CallbackServerContext* context,
                                                              const v1::DownloadModelMeshRequest& request);
 
+/// The surface of a complete scan: "scan".
+grpc::ServerWriteReactor<v1::MeshSlice>* download_scan_mesh(Backend& backend, grpc::CallbackServerContext* context,
+                                                            const v1::DownloadScanMeshRequest& request);
+
 }  // namespace lipofill::server

@@ -23,6 +23,7 @@ const std::map<std::string, Effect>& rules() {
       {"/lipofill.v1.PatientService/DeletePatient", Effect::kSteers},
       {"/lipofill.v1.PatientService/DeleteScan", Effect::kSteers},
       {"/lipofill.v1.PatientService/DownloadModelMesh", Effect::kNone},
+      {"/lipofill.v1.PatientService/DownloadScanMesh", Effect::kNone},
       {"/lipofill.v1.PatientService/GetModel", Effect::kNone},
       {"/lipofill.v1.PatientService/GetPatient", Effect::kNone},
       {"/lipofill.v1.PatientService/GetScan", Effect::kNone},

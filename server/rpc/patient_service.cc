@@ -235,6 +235,11 @@ PatientService::Reactor* PatientService::DeleteModel(Context* context, const v1:
   });
 }
 
+grpc::ServerWriteReactor<v1::MeshSlice>* PatientService::DownloadScanMesh(Context* context,
+                                                                          const v1::DownloadScanMeshRequest* request) {
+  return download_scan_mesh(backend_, context, *request);
+}
+
 grpc::ServerWriteReactor<v1::MeshSlice>* PatientService::DownloadModelMesh(
     Context* context, const v1::DownloadModelMeshRequest* request) {
   return download_model_mesh(backend_, context, *request);

@@ -35,6 +35,8 @@ class PatientService : public v1::PatientService::CallbackService {
                       v1::ListModelsResponse* response) override;
   Reactor* DeleteModel(Context* context, const v1::DeleteModelRequest* request,
                        google::protobuf::Empty* response) override;
+  grpc::ServerWriteReactor<v1::MeshSlice>* DownloadScanMesh(Context* context,
+                                                            const v1::DownloadScanMeshRequest* request) override;
   grpc::ServerWriteReactor<v1::MeshSlice>* DownloadModelMesh(Context* context,
                                                              const v1::DownloadModelMeshRequest* request) override;
 

@@ -41,8 +41,11 @@ simulation::ZoneSpec read_zone(const v1::Zone& message, const FieldReader& reade
     case v1::Zone::kRegion:
       zone.shape = simulation::NamedRegion{message.region()};
       break;
+    case v1::Zone::kPainted:
+      zone.shape = simulation::PaintedRegion{read_samples(message.painted(), 1.0, reader.below("painted"))};
+      break;
     case v1::Zone::SHAPE_NOT_SET:
-      reader.wrong("box", "is missing, and so are disc and region: one of them says where the zone is");
+      reader.wrong("box", "is missing, and so are disc, region and painted: one of them says where the zone is");
   }
   return zone;
 }

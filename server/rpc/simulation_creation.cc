@@ -56,6 +56,7 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
   simulation.set_reason(view != nullptr ? view->reason : record.reason);
   if (view != nullptr) {
     *simulation.mutable_summary() = to_summary(*view);
+    simulation.set_viewers(static_cast<uint32_t>(view->viewers));
   } else {
     simulation.mutable_summary()->ParseFromString(record.summary_message);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -206,6 +207,8 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   std::shared_ptr<const Frame> last_frame_;       ///< once ended
   std::unique_ptr<simulation::Preview> preview_;  ///< under way
   std::shared_ptr<const Frame> preview_frame_;    ///< once it is done
+
+  std::atomic<int> watching_ = 0;  ///< between watch() and unwatch()
 
   mutable std::mutex view_mutex_;
   SessionView view_;

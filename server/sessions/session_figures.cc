@@ -81,7 +81,9 @@ SessionView Session::full_view() {
 
 SessionView Session::cached_view() const {
   const std::lock_guard lock(view_mutex_);
-  return view_;
+  SessionView view = view_;
+  view.viewers = watching_;
+  return view;
 }
 
 std::vector<SeriesEntry> Session::pending_series(uint64_t after_step) const {

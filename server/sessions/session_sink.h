@@ -52,6 +52,7 @@ struct SessionView {
   simulation::CostSum cost;     ///< of the steps taken in this daemon
   std::string state_hash;       ///< empty in a cached view of a live simulation
   std::optional<PreviewView> preview;
+  int viewers = 0;
 };
 
 /// Where a session leaves what must last. Called on whichever thread runs the session, between steps; what returns OK

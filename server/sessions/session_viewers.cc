@@ -10,6 +10,7 @@
 namespace lipofill::server {
 
 void Session::watch(std::shared_ptr<Viewer> viewer) {
+  ++watching_;
   post([this, viewer] {
     try {
       const auto meshes = topology();
@@ -28,6 +29,7 @@ void Session::watch(std::shared_ptr<Viewer> viewer) {
 }
 
 void Session::unwatch(std::shared_ptr<Viewer> viewer) {
+  --watching_;
   post([this, viewer] { std::erase(viewers_, viewer); });
 }
 

@@ -42,6 +42,34 @@ TEST_F(UploadTest, ReadsACompleteScan) {
   EXPECT_EQ(get_scan(scan.name()).SerializeAsString(), scan.SerializeAsString());
 }
 
+TEST_F(UploadTest, GivesTheSurfaceBackInMillimetres) {
+  v1::Scan scan;
+  ASSERT_TRUE(upload("patients/anna", v1::OBJ, sheet_obj(60), scan).ok());
+  Context context;
+  v1::DownloadScanMeshRequest request;
+  request.set_name(scan.name());
+  auto stream = patients_->DownloadScanMesh(&context, request);
+  v1::MeshSlice slice;
+  std::map<std::string, uint64_t> rows;
+  while (stream->Read(&slice)) {
+    for (const auto& array : slice.arrays()) rows[array.name()] = array.shape(0);
+  }
+  EXPECT_TRUE(stream->Finish().ok());
+  EXPECT_TRUE(slice.last());
+  EXPECT_EQ(rows, (std::map<std::string, uint64_t>{{"scan.points", 3600u}, {"scan.cells", 2u * 59 * 59}}));
+}
+
+TEST_F(UploadTest, GivesNoSurfaceOfAScanThatIsNotComplete) {
+  const v1::Scan scan = create_scan("patients/anna", v1::OBJ, sheet_obj(60));
+  Context context;
+  v1::DownloadScanMeshRequest request;
+  request.set_name(scan.name());
+  auto stream = patients_->DownloadScanMesh(&context, request);
+  v1::MeshSlice slice;
+  EXPECT_FALSE(stream->Read(&slice));
+  EXPECT_EQ(stream->Finish().error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+}
+
 TEST_F(UploadTest, GoesOnAfterABrokenStreamAndARestart) {
   const std::string bytes = sheet_obj(200);
   const v1::Scan scan = create_scan("patients/anna", v1::OBJ, bytes);

@@ -36,6 +36,7 @@ TEST_F(WatchTest, EveryViewerGetsEveryFrameAndResumes) {
   ASSERT_TRUE(watcher.next(frame)) << "a READY simulation shows its first frame";
   EXPECT_EQ(frame.slice.sequence(), 0u);
   EXPECT_EQ(frame.slice.topology_hash(), watcher.topology_hash);
+  EXPECT_EQ(get_simulation("simulations/x").viewers(), 1u);
   ASSERT_TRUE(start("simulations/x").ok());
   for (uint64_t step = 1; step <= 20; ++step) {
     ASSERT_TRUE(watcher.next(frame));

@@ -116,6 +116,7 @@ constexpr char kPlan[] = R"(
     zones { name: "a" box { xi_min: 0 xi_max: 1 eta_min: 0 eta_max: 1 } }
     zones { name: "b" disc { centre { chart { xi: 0.5 eta: 0.5 } } radius_mm: 4 } }
     zones { name: "c" region: "masseter_left" }
+    zones { name: "d" painted { n_xi: 2 n_eta: 1 values: 0 values: 1 } }
     rest_thickness_mm { constant: 0.1 } initial_thickness_mm { constant: 0.2 }
     wall_friction: NONE wall { kind: WINKLER stiffness_kpa_per_mm: 2 }
   }
@@ -133,6 +134,7 @@ TEST(SimulationConversion, TurnsUnitsToSi) {
   EXPECT_DOUBLE_EQ(film.extent.eta_max, 0.8);
   EXPECT_DOUBLE_EQ(std::get<simulation::Disc>(film.zones[1].shape).radius, 0.004);
   EXPECT_EQ(std::get<simulation::NamedRegion>(film.zones[2].shape).name, "masseter_left");
+  EXPECT_DOUBLE_EQ(std::get<simulation::PaintedRegion>(film.zones[3].shape).cover.at(0.25, 0.5), 0.25);
   EXPECT_DOUBLE_EQ(film.rest_thickness.at(0, 0), 1e-4);
   EXPECT_DOUBLE_EQ(film.initial_thickness->at(0, 0), 2e-4);
   EXPECT_EQ(film.wall_friction, simulation::WallFriction::kNone);

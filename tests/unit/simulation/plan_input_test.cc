@@ -54,6 +54,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "films[0].zones[0].disc.centre", "1.5"},
         BadPlan{"Region", [](auto& s) { s.films[0].zones[0].shape = NamedRegion{"elbow_left"}; },
                 "films[0].zones[0].region", "'elbow_left'"},
+        BadPlan{"Painted",
+                [](auto& s) {
+                  s.films[0].zones[0].shape = PaintedRegion{geometry::ScalarField{2, 2, {0, 1}}};
+                },
+                "films[0].zones[0].painted", "2"},
+        BadPlan{"PaintedNothing",
+                [](auto& s) { s.films[0].zones[0].shape = PaintedRegion{geometry::ScalarField::constant(0.4)}; },
+                "films[0].zones[0]", "claims no film cell"},
         BadPlan{"RestThickness", [](auto& s) { s.films[0].rest_thickness = geometry::ScalarField::constant(-1e-3); },
                 "films[0].rest_thickness_mm", "-1 mm"},
         BadPlan{"InitialThickness",

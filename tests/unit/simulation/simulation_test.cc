@@ -54,6 +54,23 @@ TEST(SimulationRun, ZonesAreSealedFromEachOther) {
   EXPECT_NEAR(simulation->zone_reports()[0].volume, before + 0.2e-6, 1e-12);
 }
 
+TEST(SimulationRun, PaintedZoneIsThatOfItsCells) {
+  SimulationSpec boxed = make_small_plan();
+  boxed.films[0].zones = {{"all", ChartBox{0.0, 0.5, 0.0, 1.0}}};
+  boxed.injections[0].site = geometry::ChartPoint{0.25, 0.45};
+  boxed.probes.clear();
+  SimulationSpec painted = boxed;
+  // Bilinear from 1 to 0: a half at xi = 0.5, between two columns of cells.
+  painted.films[0].zones = {{"all", PaintedRegion{geometry::ScalarField{2, 1, {1.0, 0.0}}}}};
+  const auto one = make_small_simulation(boxed);
+  const auto other = make_small_simulation(painted);
+  for (int k = 0; k < 5; ++k) {
+    one->advance_step();
+    other->advance_step();
+  }
+  EXPECT_EQ(one->state_hash(), other->state_hash());
+}
+
 TEST(SimulationRun, TakesFatOutAgainButNoMoreThanThereIs) {
   SimulationSpec spec = make_small_plan();
   spec.injections = {{"all", 0.2e-6, 2e-6, std::nullopt, std::nullopt}, {"all", -0.19e-6, 1e-6, 0.5, std::nullopt}};
@@ -170,7 +187,22 @@ TEST(SimulationFrames, MatchTheirTopologyAndTheReport) {
     }
     EXPECT_NEAR(largest, 1e3 * simulation->report().skin_max_displacement, 1e-5);
   }
-  EXPECT_EQ(simulation->frame({"skin"}).size(), 3u);
+  EXPECT_EQ(simulation->frame({"skin"}).size(), 4u);
+}
+
+TEST(SimulationFrames, NumberTheZonesUnderTheSkin) {
+  SimulationSpec spec = make_small_plan();
+  spec.films[0].zones = {{"left", ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", ChartBox{0.5, 1.0, 0.0, 0.5}}};
+  spec.injections[0].zone = "left";
+  spec.injections[0].site.reset();
+  spec.probes.clear();
+  const auto fields = make_small_simulation(spec)->frame({"skin"});
+  const auto zone = std::find_if(fields.begin(), fields.end(), [](const auto& field) { return field.name == "zone"; });
+  ASSERT_NE(zone, fields.end());
+  const auto at = [&](int i, int j) { return zone->values[static_cast<size_t>(j * 13 + i)]; };
+  EXPECT_EQ(at(1, 1), 1.0f);
+  EXPECT_EQ(at(11, 1), 2.0f);
+  EXPECT_EQ(at(11, 11), 0.0f) << "outside every zone";
 }
 
 TEST(FaceModelHash, IsTheSameForTheSameSpecificationOnly) {

@@ -148,6 +148,19 @@ absl::StatusOr<std::optional<OperationView>> find_earlier(Backend& backend, cons
   return backend.operations.add_done(patient_name(patient), request, to_model(*record).SerializeAsString());
 }
 
+/// What a request that is only to be checked is answered when nothing is wrong with it.
+OperationView checked_only(const v1::BuildModelRequest& request) {
+  v1::Model model;
+  *model.mutable_spec() = fill_tissue_figures(request.spec());
+  OperationView view;
+  view.target = request.parent();
+  view.response_message = model.SerializeAsString();
+  view.done = true;
+  view.progress = 1.0;
+  view.stage = "checked, not built";
+  return view;
+}
+
 }  // namespace
 
 v1::Model to_model(const ModelRecord& record) {
@@ -182,6 +195,7 @@ absl::StatusOr<OperationView> start_model_build(Backend& backend, const v1::Buil
   if (auto good = check_request_id(request.request_id()); !good.ok()) return good;
   if (const auto known = backend.store.get_patient(*patient); !known.ok()) return known.status();
   if (const auto good = check_spec(backend, *patient, request); !good.ok()) return good;
+  if (request.validate_only()) return checked_only(request);
   const RequestKey key = make_request_key("BuildModel", request.request_id(), request);
   const auto earlier = find_earlier(backend, *patient, key);
   if (!earlier.ok()) return earlier.status();
@@ -191,7 +205,8 @@ absl::StatusOr<OperationView> start_model_build(Backend& backend, const v1::Buil
   if (!started->is_new) return started->operation;
   const std::string id = started->operation.id;
   const bool taken = backend.builds.run(
-      [&backend, id, patient = *patient, spec = request.spec(), key] { run_build(backend, id, patient, spec, key); });
+      [&backend, id, patient = *patient, spec = request.spec(), key] { run_build(backend, id, patient, spec, key); },
+      id);
   if (!taken) {
     backend.operations.drop(id);
     return absl::ResourceExhaustedError(

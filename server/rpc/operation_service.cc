@@ -27,15 +27,18 @@ absl::StatusOr<std::chrono::milliseconds> read_timeout(const v1::WaitOperationRe
 
 }  // namespace
 
-v1::Operation to_operation(const OperationView& view) {
+v1::Operation to_operation(const Backend& backend, const OperationView& view) {
   v1::Operation operation;
-  operation.set_name(absl::StrCat("operations/", view.id));
+  if (!view.id.empty()) operation.set_name(absl::StrCat("operations/", view.id));
   operation.set_target(view.target);
   operation.set_done(view.done);
   operation.set_progress(view.progress);
   operation.set_stage(view.stage);
   *operation.mutable_create_time() = to_timestamp(view.create_time_us);
-  if (!view.done) return operation;
+  if (!view.done) {
+    operation.set_queue_position(static_cast<uint32_t>(backend.builds.position(view.id)));
+    return operation;
+  }
   if (view.error.ok()) {
     v1::Model model;
     model.ParseFromString(view.response_message);
@@ -52,7 +55,7 @@ OperationService::Reactor* OperationService::GetOperation(Context* context, cons
     const auto id = parse_operation_name(request->name(), "name");
     if (!id.ok()) return id.status();
     const auto operation = backend_.operations.get(*id);
-    if (operation.ok()) *response = to_operation(*operation);
+    if (operation.ok()) *response = to_operation(backend_, *operation);
     return operation.status();
   });
 }
@@ -63,9 +66,9 @@ OperationService::Reactor* OperationService::ListOperations(Context* context, co
     const auto page = parse_page("operations", request->page_size(), request->page_token());
     if (!page.ok()) return page.status();
     const auto operations = backend_.operations.list(one_more(*page));
-    response->set_next_page_token(fill_page("operations", *page, operations, [response](const OperationView& view) {
-      *response->add_operations() = to_operation(view);
-    }));
+    response->set_next_page_token(fill_page(
+        "operations", *page, operations,
+        [this, response](const OperationView& view) { *response->add_operations() = to_operation(backend_, view); }));
     return absl::OkStatus();
   });
 }
@@ -84,8 +87,8 @@ OperationService::Reactor* OperationService::WaitOperation(Context* context, con
   }
   std::optional<double> seen;
   if (request->has_seen_progress()) seen = request->seen_progress();
-  backend_.operations.wait(*id, *timeout, seen, [reactor, response](const absl::StatusOr<OperationView>& view) {
-    if (view.ok()) *response = to_operation(*view);
+  backend_.operations.wait(*id, *timeout, seen, [this, reactor, response](const absl::StatusOr<OperationView>& view) {
+    if (view.ok()) *response = to_operation(backend_, *view);
     reactor->Finish(to_grpc_status(view.status()));
   });
   return reactor;

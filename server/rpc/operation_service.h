@@ -5,7 +5,8 @@
 
 namespace lipofill::server {
 
-v1::Operation to_operation(const OperationView& view);
+/// As it is on the wire, with its place in the queue of builds while it waits.
+v1::Operation to_operation(const Backend& backend, const OperationView& view);
 
 /// Long-running operations. See proto/lipofill/v1/operation_service.proto.
 class OperationService : public v1::OperationService::CallbackService {

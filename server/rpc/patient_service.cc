@@ -2,6 +2,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
+#include "server/rpc/etag.h"
+#include "server/rpc/field_mask.h"
 #include "server/rpc/listing.h"
 #include "server/rpc/mesh_download.h"
 #include "server/rpc/model_building.h"
@@ -24,6 +26,7 @@ v1::Patient to_patient(const PatientRecord& record) {
   patient.set_name(patient_name(record.id));
   patient.set_display_name(record.display_name);
   patient.mutable_labels()->insert(record.labels.begin(), record.labels.end());
+  patient.set_etag(make_etag(record));
   *patient.mutable_create_time() = to_timestamp(record.create_time_us);
   return patient;
 }
@@ -55,24 +58,53 @@ absl::Status create_patient(Backend& backend, const v1::CreatePatientRequest& re
   const auto labels = read_labels(request.labels(), "labels");
   violations.absorb("", labels.status());
   if (!violations.empty()) return violations.to_status();
-  const auto made = backend.store.create_patient({*id, request.display_name(), *labels, now_us()},
-                                                 make_request_key("CreatePatient", request.request_id(), request));
+  const PatientRecord draft{*id, request.display_name(), *labels, now_us()};
+  if (request.validate_only()) {
+    if (backend.store.get_patient(*id).ok()) return absl::AlreadyExistsError(patient_name(*id) + " exists");
+    response = to_patient(draft);
+    return absl::OkStatus();
+  }
+  const auto made =
+      backend.store.create_patient(draft, make_request_key("CreatePatient", request.request_id(), request));
   if (!made.ok()) return made.status();
   spdlog::info("{} created", patient_name(made->id));
   response = to_patient(*made);
   return absl::OkStatus();
 }
 
-absl::Status update_patient(Backend& backend, const v1::UpdatePatientRequest& request, v1::Patient& response) {
-  const auto id = parse_patient_name(request.patient().name(), "patient.name");
-  if (!id.ok()) return id.status();
-  if (auto good = check_display_name(request.patient().display_name(), "patient.display_name"); !good.ok()) return good;
-  const auto labels = read_labels(request.patient().labels(), "patient.labels");
-  if (!labels.ok()) return labels.status();
-  if (auto done = backend.store.update_patient({*id, request.patient().display_name(), *labels, 0}); !done.ok()) {
-    return done;
+/// The fields of a patient that may change.
+absl::Status check_update_mask(const v1::UpdatePatientRequest& request) {
+  if (auto good = check_field_mask(request.update_mask(), *v1::Patient::descriptor(), "update_mask"); !good.ok()) {
+    return good;
   }
-  const auto updated = backend.store.get_patient(*id);
+  for (const std::string& path : request.update_mask().paths()) {
+    if (path != "display_name" && path != "labels" && path != "*") {
+      return field_violation("update_mask", "names " + path + "; only display_name and labels can change");
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status update_patient(Backend& backend, const v1::UpdatePatientRequest& request, v1::Patient& response) {
+  FieldViolations violations;
+  const v1::Patient& given = request.patient();
+  const auto id = parse_patient_name(given.name(), "patient.name");
+  violations.absorb("", id.status());
+  violations.absorb("", check_update_mask(request));
+  violations.absorb("", check_display_name(given.display_name(), "patient.display_name"));
+  const auto labels = read_labels(given.labels(), "patient.labels");
+  violations.absorb("", labels.status());
+  if (!violations.empty()) return violations.to_status();
+
+  const auto change = [&](const PatientRecord& present) -> absl::StatusOr<PatientRecord> {
+    if (auto fits = check_etag(given.etag(), make_etag(present), "patient.etag"); !fits.ok()) return fits;
+    PatientRecord changed = present;
+    if (is_masked(request.update_mask(), "display_name")) changed.display_name = given.display_name();
+    if (is_masked(request.update_mask(), "labels")) changed.labels = *labels;
+    return changed;
+  };
+  auto updated = backend.store.get_patient(*id);
+  if (updated.ok()) updated = request.validate_only() ? change(*updated) : backend.store.update_patient(*id, change);
   if (updated.ok()) response = to_patient(*updated);
   return updated.status();
 }
@@ -80,7 +112,10 @@ absl::Status update_patient(Backend& backend, const v1::UpdatePatientRequest& re
 absl::Status delete_patient(Backend& backend, const v1::DeletePatientRequest& request) {
   const auto id = parse_patient_name(request.name(), "name");
   if (!id.ok()) return id.status();
-  if (auto done = backend.store.delete_patient(*id, request.force()); !done.ok()) return done;
+  const auto check = [&request](const PatientRecord& present) {
+    return check_etag(request.etag(), make_etag(present), "etag");
+  };
+  if (auto done = backend.store.delete_patient(*id, request.force(), check); !done.ok()) return done;
   backend.scan_files.remove_patient(*id);
   spdlog::info("{} deleted", request.name());
   return absl::OkStatus();
@@ -190,20 +225,21 @@ PatientService::Reactor* PatientService::BuildModel(Context* context, const v1::
                                                     v1::Operation* response) {
   return answer(context, request, [&]() -> absl::Status {
     const auto operation = start_model_build(backend_, *request);
-    if (operation.ok()) *response = to_operation(*operation);
+    if (operation.ok()) *response = to_operation(backend_, *operation);
     return operation.status();
   });
 }
 
 PatientService::Reactor* PatientService::GetModel(Context* context, const v1::GetModelRequest* request,
                                                   v1::Model* response) {
-  return answer(context, request, [&]() -> absl::Status {
+  const auto read = [&]() -> absl::Status {
     const auto ids = parse_model_name(request->name(), "name");
     if (!ids.ok()) return ids.status();
     const auto model = backend_.store.get_model(ids->patient, ids->id);
     if (model.ok()) *response = to_model(*model);
     return model.status();
-  });
+  };
+  return answer(context, request, [&] { return read_masked(*request, *response, read); });
 }
 
 PatientService::Reactor* PatientService::ListModels(Context* context, const v1::ListModelsRequest* request,
@@ -211,13 +247,16 @@ PatientService::Reactor* PatientService::ListModels(Context* context, const v1::
   return answer(context, request, [&]() -> absl::Status {
     const auto patient = parse_patient_name(request->parent(), "parent");
     if (!patient.ok()) return patient.status();
+    const auto& mask = request->read_mask();
+    if (auto good = check_field_mask(mask, *v1::Model::descriptor(), "read_mask"); !good.ok()) return good;
     const std::string collection = request->parent() + "/models";
     const auto page = parse_page(collection, request->page_size(), request->page_token());
     if (!page.ok()) return page.status();
     const auto models = backend_.store.list_models(*patient, one_more(*page));
     if (!models.ok()) return models.status();
-    response->set_next_page_token(fill_page(collection, *page, *models, [response](const ModelRecord& model) {
+    response->set_next_page_token(fill_page(collection, *page, *models, [&](const ModelRecord& model) {
       *response->add_models() = to_model(model);
+      keep_masked(mask, *response->mutable_models()->rbegin());
     }));
     return absl::OkStatus();
   });

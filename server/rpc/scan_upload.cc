@@ -137,6 +137,10 @@ absl::StatusOr<v1::Scan> ScanUploads::create(const v1::CreateScanRequest& reques
   record.size_bytes = request.size_bytes();
   record.sha256 = absl::AsciiStrToLower(request.sha256());
   record.create_time_us = now_us();
+  if (request.validate_only()) {
+    const auto owner = backend_.store.get_patient(*patient);
+    return owner.ok() ? absl::StatusOr<v1::Scan>(to_scan(record)) : owner.status();
+  }
   const auto made = backend_.store.create_scan(record, make_request_key("CreateScan", request.request_id(), request));
   if (!made.ok()) return made.status();
   return to_scan(*made);

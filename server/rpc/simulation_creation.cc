@@ -2,6 +2,8 @@
 
 #include <future>
 
+#include "absl/strings/str_cat.h"
+#include "server/rpc/etag.h"
 #include "server/rpc/names.h"
 #include "server/rpc/report_conversion.h"
 #include "server/rpc/request_key.h"
@@ -37,6 +39,19 @@ absl::StatusOr<SimulationRecord> read_request(const v1::CreateSimulationRequest&
   return record;
 }
 
+/// What a simulation that is only to be checked would be when it is created.
+absl::StatusOr<v1::Simulation> show_checked(Backend& backend, const SimulationRecord& record,
+                                            const v1::SimulationSpec& spec,
+                                            std::unique_ptr<simulation::Simulation> simulation) {
+  if (backend.store.get_simulation(record.id).ok()) {
+    return absl::AlreadyExistsError(absl::StrCat(simulation_name(record.id), " exists"));
+  }
+  const Session session(make_session_options(backend, record.id, 0, spec), std::move(simulation), backend.workers,
+                        backend.keeper);
+  const SessionView view = session.cached_view();
+  return to_simulation(record, &view);
+}
+
 absl::StatusOr<SessionView> start_and_wait(Session& session) {
   auto answer = std::make_shared<std::promise<absl::StatusOr<SessionView>>>();
   session.start({}, [answer](absl::StatusOr<SessionView> view) { answer->set_value(std::move(view)); });
@@ -50,6 +65,7 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
   simulation.set_name(simulation_name(record.id));
   simulation.set_display_name(record.display_name);
   simulation.set_origin(record.origin);
+  simulation.set_etag(make_etag(record));
   simulation.mutable_spec()->ParseFromString(record.spec_message);
   *simulation.mutable_create_time() = to_timestamp(record.create_time_us);
   simulation.set_state(to_state(view != nullptr ? view->state : record.state));
@@ -126,7 +142,10 @@ absl::StatusOr<v1::Simulation> show_made_before(Backend& backend, const std::str
   return show_simulation(backend, id);
 }
 
-absl::Status delete_simulation_record(Backend& backend, const std::string& id) {
+absl::Status delete_simulation_record(Backend& backend, const std::string& id, const std::string& etag) {
+  const auto record = backend.store.get_simulation(id);
+  if (!record.ok()) return record.status();
+  if (absl::Status fits = check_etag(etag, make_etag(*record), "etag"); !fits.ok()) return fits;
   const absl::Status done = backend.store.delete_simulation(id);
   if (!done.ok()) return done;
   backend.sessions.remove(id);
@@ -149,6 +168,7 @@ absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const v1::Cre
   auto simulation = make_simulation(backend, record->model, request.spec());
   if (!simulation.ok()) return simulation.status();
   if (caller_has_left()) return absl::CancelledError("the caller left before the simulation was created");
+  if (request.validate_only()) return show_checked(backend, *record, request.spec(), *std::move(simulation));
   const auto kept = backend.store.create_simulation(*record, key);
   if (!kept.ok()) return kept.status();
   if (kept->id != record->id) return show_made_before(backend, simulation_name(kept->id), request.start());

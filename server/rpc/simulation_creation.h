@@ -30,8 +30,8 @@ absl::StatusOr<v1::Simulation> open_session(Backend& backend, SessionManager::Pl
 /// What an equal request made before; started now when it was not then.
 absl::StatusOr<v1::Simulation> show_made_before(Backend& backend, const std::string& name, bool start);
 
-/// Deletes the record of a simulation and all that belongs to it.
-absl::Status delete_simulation_record(Backend& backend, const std::string& id);
+/// Deletes the record of a simulation and all that belongs to it. ABORTED when an etag is given that is not its.
+absl::Status delete_simulation_record(Backend& backend, const std::string& id, const std::string& etag = "");
 
 /// Makes the simulation (the core checks the specification), its record and its session, or finds what an equal request
 /// made. May take seconds: the model may have to be built again.

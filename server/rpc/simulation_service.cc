@@ -1,7 +1,12 @@
 #include "server/rpc/simulation_service.h"
 
+#include <memory>
+#include <optional>
+
 #include "absl/strings/str_cat.h"
 #include "server/rpc/checkpoint_calls.h"
+#include "server/rpc/etag.h"
+#include "server/rpc/field_mask.h"
 #include "server/rpc/listing.h"
 #include "server/rpc/names.h"
 #include "server/rpc/request_key.h"
@@ -18,16 +23,45 @@ namespace {
 using Reactor = grpc::ServerUnaryReactor;
 
 /// Answers with the session's view and the record it belongs to.
-Session::Reply reply_to(Backend& backend, const std::string& id, Reactor* reactor, v1::Simulation* response) {
-  return [&backend, id, reactor, response](const absl::StatusOr<SessionView>& view) {
+Session::Reply reply_to(Backend& backend, const std::string& id, Reactor* reactor, v1::Simulation* response,
+                        const std::function<void(v1::Simulation&)>& amend = nullptr) {
+  return [&backend, id, reactor, response, amend](const absl::StatusOr<SessionView>& view) {
     const absl::Status done = guarded([&]() -> absl::Status {
       if (!view.ok()) return view.status();
       const auto record = backend.store.get_simulation(id);
       if (record.ok()) *response = to_simulation(*record, &*view);
+      if (record.ok() && amend != nullptr) amend(*response);
       return record.status();
     });
     reactor->Finish(to_grpc_status(done));
   };
+}
+
+/// What is wrong with an injection is named below "injection"; an etag that does not fit is none of its fields.
+absl::Status name_injection(const absl::Status& status) {
+  return absl::IsAborted(status) ? status : with_prefix("injection", status);
+}
+
+absl::StatusOr<InjectionOrder> read_injection(Backend& backend, const std::string& id,
+                                              const v1::InjectRequest& request) {
+  const auto injection = to_injection_spec(request.injection());
+  if (!injection.ok()) return name_injection(injection.status());
+  const auto check = [&backend, id, etag = request.etag()]() -> absl::Status {
+    if (etag.empty()) return absl::OkStatus();
+    const auto record = backend.store.get_simulation(id);
+    return record.ok() ? check_etag(etag, make_etag(*record), "etag") : record.status();
+  };
+  return InjectionOrder{*injection, request.injection().SerializeAsString(), check};
+}
+
+void foresee_injection(Session& session, const InjectionOrder& order, const v1::Injection& injection,
+                       const std::shared_ptr<std::optional<v1::Injection>>& foreseen, const Session::Reply& reply) {
+  session.foresee(order, [&session, injection, foreseen, reply](const absl::StatusOr<simulation::InjectionSpec>& spec) {
+    if (!spec.ok()) return reply(name_injection(spec.status()));
+    *foreseen = injection;
+    (*foreseen)->set_start_s(spec->start.value_or(0.0));
+    reply(session.cached_view());
+  });
 }
 
 /// What becomes of a command when there is no session: the simulation has ended, perhaps by an equal request, or could
@@ -47,7 +81,7 @@ absl::Status answer_without_session(Backend& backend, const std::string& id, con
 
 template <typename Request>
 Reactor* SimulationService::command(Context* context, const Request* request, v1::Simulation* response,
-                                    const char* what, const Act& act) {
+                                    const char* what, const Act& act, const Amend& amend) {
   Reactor* reactor = context->DefaultReactor();
   bool answered = false;
   const LogScope scope(call_of(context).log_fields());
@@ -59,7 +93,7 @@ Reactor* SimulationService::command(Context* context, const Request* request, v1
     const RequestKey key = make_request_key(what, request->request_id(), *request);
     if (const auto session = backend_.sessions.find(*id); session != nullptr) {
       answered = true;
-      act(*session, key, reply_to(backend_, *id, reactor, response));
+      act(*session, key, reply_to(backend_, *id, reactor, response, amend));
       return absl::OkStatus();
     }
     return answer_without_session(backend_, *id, what, key, *response);
@@ -80,16 +114,20 @@ Reactor* SimulationService::CreateSimulation(Context* context, const v1::CreateS
 Reactor* SimulationService::GetSimulation(Context* context, const v1::GetSimulationRequest* request,
                                           v1::Simulation* response) {
   const auto id = parse_simulation_name(request->name(), "name");
-  const auto session = id.ok() ? backend_.sessions.find(*id) : nullptr;
+  const absl::Status masked = check_field_mask(request->read_mask(), *v1::Simulation::descriptor(), "read_mask");
+  const auto session = id.ok() && masked.ok() ? backend_.sessions.find(*id) : nullptr;
   if (session != nullptr && check_call(context, *request).ok()) {
     Reactor* reactor = context->DefaultReactor();
-    session->inspect(reply_to(backend_, *id, reactor, response));
+    session->inspect(reply_to(backend_, *id, reactor, response,
+                              [mask = request->read_mask()](v1::Simulation& shown) { keep_masked(mask, shown); }));
     return reactor;
   }
   return answer(context, request, [&]() -> absl::Status {
     if (!id.ok()) return id.status();
+    if (!masked.ok()) return masked;
     const auto record = backend_.store.get_simulation(*id);
     if (record.ok()) *response = to_simulation(*record, nullptr);
+    keep_masked(request->read_mask(), *response);
     return record.status();
   });
 }
@@ -99,12 +137,15 @@ Reactor* SimulationService::ListSimulations(Context* context, const v1::ListSimu
   return answer(context, request, [&]() -> absl::Status {
     const auto page = parse_page("simulations", request->page_size(), request->page_token());
     if (!page.ok()) return page.status();
+    const auto& mask = request->read_mask();
+    if (auto good = check_field_mask(mask, *v1::Simulation::descriptor(), "read_mask"); !good.ok()) return good;
     const auto records = backend_.store.list_simulations(one_more(*page));
     if (!records.ok()) return records.status();
     response->set_next_page_token(fill_page("simulations", *page, *records, [&](const SimulationRecord& record) {
       const auto session = backend_.sessions.find(record.id);
       const SessionView view = session != nullptr ? session->cached_view() : SessionView{};
       *response->add_simulations() = to_simulation(record, session != nullptr ? &view : nullptr);
+      keep_masked(mask, *response->mutable_simulations()->rbegin());
     }));
     return absl::OkStatus();
   });
@@ -145,24 +186,28 @@ Reactor* SimulationService::DeleteSimulation(Context* context, const v1::DeleteS
   if (session != nullptr && check_call(context, *request).ok()) {
     Reactor* reactor = context->DefaultReactor();
     session->abandon(
-        [this, id = *id] { return delete_simulation_record(backend_, id); },
+        [this, id = *id, etag = request->etag()] { return delete_simulation_record(backend_, id, etag); },
         [reactor](const absl::StatusOr<SessionView>& view) { reactor->Finish(to_grpc_status(view.status())); });
     return reactor;
   }
-  return answer(context, request, [&] { return id.ok() ? delete_simulation_record(backend_, *id) : id.status(); });
+  return answer(context, request,
+                [&] { return id.ok() ? delete_simulation_record(backend_, *id, request->etag()) : id.status(); });
 }
 
 Reactor* SimulationService::Inject(Context* context, const v1::InjectRequest* request, v1::Simulation* response) {
-  return command(context, request, response, "inject",
-                 [request](Session& session, RequestKey key, Session::Reply reply) {
-                   const auto injection = to_injection_spec(request->injection());
-                   if (!injection.ok()) return reply(with_prefix("injection", injection.status()));
-                   session.inject({*injection, request->injection().SerializeAsString()}, std::move(key),
-                                  [reply](absl::StatusOr<SessionView> view) {
-                                    if (!view.ok()) return reply(with_prefix("injection", view.status()));
-                                    reply(std::move(view));
-                                  });
-                 });
+  const auto foreseen = std::make_shared<std::optional<v1::Injection>>();
+  const auto act = [this, request, foreseen](Session& session, RequestKey key, Session::Reply reply) {
+    const auto order = read_injection(backend_, session.id(), *request);
+    if (!order.ok()) return reply(order.status());
+    if (request->validate_only()) return foresee_injection(session, *order, request->injection(), foreseen, reply);
+    session.inject(*order, std::move(key), [reply](absl::StatusOr<SessionView> view) {
+      if (!view.ok()) return reply(name_injection(view.status()));
+      reply(std::move(view));
+    });
+  };
+  return command(context, request, response, "inject", act, [foreseen](v1::Simulation& simulation) {
+    if (foreseen->has_value()) *simulation.mutable_spec()->add_injections() = **foreseen;
+  });
 }
 
 Reactor* SimulationService::CreateCheckpoint(Context* context, const v1::CreateCheckpointRequest* request,

@@ -48,12 +48,14 @@ class SimulationService : public v1::SimulationService::CallbackService {
       Context* context, const v1::ExportTissueDeckRequest* request) override;
 
  private:
+  /// What an answer gets beside what is in the store.
+  using Amend = std::function<void(v1::Simulation& simulation)>;
   using Act = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
   /// Has the session act and answers with the simulation as it is then; FAILED_PRECONDITION when it has ended, unless
   /// an equal request was carried out before that.
   template <typename Request>
-  Reactor* command(Context* context, const Request* request, v1::Simulation* response, const char* what,
-                   const Act& act);
+  Reactor* command(Context* context, const Request* request, v1::Simulation* response, const char* what, const Act& act,
+                   const Amend& amend = nullptr);
 
   Backend& backend_;
 };

@@ -31,6 +31,7 @@ struct SessionOptions {
 struct InjectionOrder {
   simulation::InjectionSpec spec;
   std::string message;
+  std::function<absl::Status()> check = nullptr;  ///< may refuse it; no command comes between it and the injection
 };
 
 /// A state to go back to: a simulation that is in it, and the plan that goes with it.
@@ -85,6 +86,9 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   void resume(RequestKey request, Reply reply);
   void stop(std::string reason, RequestKey request, Reply reply);
   void inject(InjectionOrder order, RequestKey request, Reply reply);
+  /// What inject() would add, or why it would not.
+  using InjectionReply = std::function<void(absl::StatusOr<simulation::InjectionSpec>)>;
+  void foresee(InjectionOrder order, InjectionReply reply);
   void restore(RestoreOrder order, RequestKey request, Reply reply);
   /// The figures as they are now, with the state hash.
   void inspect(Reply reply);
@@ -131,6 +135,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   void answer(const Reply& reply, const std::function<absl::Status()>& act);
   void command(const char* what, std::vector<SimulationState> allowed, const RequestKey& request, const Reply& reply,
                const std::function<absl::Status()>& act);
+  absl::StatusOr<simulation::InjectionSpec> resolve(const InjectionOrder& order) const;
   absl::Status check_allowed(const char* what, const std::vector<SimulationState>& allowed) const;
   absl::Status keep_and_do(CommandKind kind, const std::string& payload, const RequestKey& request,
                            const std::function<void()>& act);

@@ -11,6 +11,12 @@
 #include "spdlog/spdlog.h"
 
 namespace lipofill::server {
+namespace {
+
+const std::vector<SimulationState> kNotEnded = {SimulationState::kReady, SimulationState::kRunning,
+                                                SimulationState::kPaused};
+
+}  // namespace
 
 // Nothing that goes wrong here may cost the caller its answer.
 absl::Status Session::guarded(const std::function<absl::Status()>& act) {
@@ -99,36 +105,52 @@ void Session::resume(RequestKey request, Reply reply) {
 
 void Session::stop(std::string reason, RequestKey request, Reply reply) {
   post([this, reason, request, reply] {
-    command("stop", {SimulationState::kReady, SimulationState::kRunning, SimulationState::kPaused}, request, reply,
-            [this, reason, request] {
-              return keep_and_do(CommandKind::kStop, reason, request,
-                                 [this, &reason] { finish(SimulationState::kStopped, reason); });
-            });
+    command("stop", kNotEnded, request, reply, [this, reason, request] {
+      return keep_and_do(CommandKind::kStop, reason, request,
+                         [this, &reason] { finish(SimulationState::kStopped, reason); });
+    });
   });
 }
 
 void Session::inject(InjectionOrder order, RequestKey request, Reply reply) {
   post([this, order, request, reply] {
-    command("inject", {SimulationState::kReady, SimulationState::kRunning, SimulationState::kPaused}, request, reply,
-            [this, order, request]() -> absl::Status {
-              const auto resolved = simulation_->resolve(order.spec);
-              if (!resolved.ok()) return resolved.status();
-              const auto kept =
-                  sink_.keep_injection(record_of(CommandKind::kInject, order.message), *resolved->start, request);
-              if (!kept.ok() || !*kept) return kept.status();
-              const absl::Status done = simulation_->inject(*resolved);
-              if (done.ok()) note_changed_plan("an injection was added after it");
-              spdlog::info("simulations/{} takes an injection at step {}", options_.id, view_.report.step);
-              return done;
-            });
+    command("inject", kNotEnded, request, reply, [this, order, request]() -> absl::Status {
+      const auto resolved = resolve(order);
+      if (!resolved.ok()) return resolved.status();
+      const auto kept = sink_.keep_injection(record_of(CommandKind::kInject, order.message), *resolved->start, request);
+      if (!kept.ok() || !*kept) return kept.status();
+      const absl::Status done = simulation_->inject(*resolved);
+      if (done.ok()) note_changed_plan("an injection was added after it");
+      spdlog::info("simulations/{} takes an injection at step {}", options_.id, view_.report.step);
+      return done;
+    });
+  });
+}
+
+absl::StatusOr<simulation::InjectionSpec> Session::resolve(const InjectionOrder& order) const {
+  if (order.check != nullptr) {
+    if (absl::Status fits = order.check(); !fits.ok()) return fits;
+  }
+  return simulation_->resolve(order.spec);
+}
+
+void Session::foresee(InjectionOrder order, InjectionReply reply) {
+  post([this, order, reply] {
+    const auto foreseen = std::make_shared<absl::StatusOr<simulation::InjectionSpec>>(absl::UnknownError(""));
+    const auto pass_on = [foreseen, reply](const absl::StatusOr<SessionView>& view) {
+      reply(view.ok() ? std::move(*foreseen) : view.status());
+    };
+    command("inject", kNotEnded, {}, pass_on, [this, foreseen, order] {
+      *foreseen = resolve(order);
+      return foreseen->status();
+    });
   });
 }
 
 void Session::restore(RestoreOrder order, RequestKey request, Reply reply) {
   const auto shared = std::make_shared<RestoreOrder>(std::move(order));  // a command can be copied
   post([this, shared, request, reply] {
-    command("restore", {SimulationState::kReady, SimulationState::kRunning, SimulationState::kPaused}, request, reply,
-            [this, shared, request] { return go_back(*shared, request); });
+    command("restore", kNotEnded, request, reply, [this, shared, request] { return go_back(*shared, request); });
   });
 }
 
@@ -168,11 +190,10 @@ void Session::checkpoint(std::string checkpoint, RequestKey request, CheckpointR
     const auto pass_on = [kept, reply](const absl::StatusOr<SessionView>& view) {
       reply(view.ok() ? std::move(*kept) : view.status());
     };
-    command("checkpoint", {SimulationState::kReady, SimulationState::kRunning, SimulationState::kPaused}, {}, pass_on,
-            [this, kept, checkpoint, request] {
-              *kept = keep_checkpoint(CheckpointKind::kAsked, checkpoint, request);
-              return kept->status();
-            });
+    command("checkpoint", kNotEnded, {}, pass_on, [this, kept, checkpoint, request] {
+      *kept = keep_checkpoint(CheckpointKind::kAsked, checkpoint, request);
+      return kept->status();
+    });
   });
 }
 

@@ -1,5 +1,7 @@
 #include "server/sessions/task_pool.h"
 
+#include <algorithm>
+
 #include "server/sessions/thread_name.h"
 
 namespace lipofill::server {
@@ -17,11 +19,11 @@ TaskPool::~TaskPool() {
   stop();
 }
 
-bool TaskPool::run(std::function<void()> work) {
+bool TaskPool::run(std::function<void()> work, std::string label) {
   {
     const std::lock_guard lock(mutex_);
     if (stopping_ || queue_.size() >= max_queued_) return false;
-    queue_.push_back(std::move(work));
+    queue_.push_back({std::move(work), std::move(label)});
   }
   changed_.notify_one();
   return true;
@@ -30,6 +32,12 @@ bool TaskPool::run(std::function<void()> work) {
 size_t TaskPool::queue_depth() const {
   const std::lock_guard lock(mutex_);
   return queue_.size();
+}
+
+size_t TaskPool::position(const std::string& label) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::find_if(queue_.begin(), queue_.end(), [&](const Entry& e) { return e.label == label; });
+  return found == queue_.end() ? 0 : static_cast<size_t>(found - queue_.begin()) + 1;
 }
 
 void TaskPool::stop() {
@@ -48,7 +56,7 @@ void TaskPool::work() {
   while (true) {
     changed_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
     if (queue_.empty()) return;
-    std::function<void()> next = std::move(queue_.front());
+    std::function<void()> next = std::move(queue_.front().work);
     queue_.pop_front();
     lock.unlock();
     next();

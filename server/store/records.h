@@ -60,7 +60,8 @@ struct SimulationRecord {
   std::string reason;
   std::string summary_message;
   int64_t create_time_us = 0;
-  std::string origin = {};  ///< simulations/{simulation}/checkpoints/{checkpoint} it began from; empty: from its plan
+  std::string origin = {};    ///< simulations/{simulation}/checkpoints/{checkpoint} it began from; empty: from its plan
+  uint64_t last_command = 0;  ///< number of the last command it took; given by the store
 };
 
 /// A client's command. Those that set the state are told by it: start and resume RUNNING, pause PAUSED.

@@ -67,25 +67,31 @@ absl::StatusOr<std::vector<PatientRecord>> SqliteStore::list_patients(const Page
   return patients;
 }
 
-absl::Status SqliteStore::update_patient(const PatientRecord& patient) {
+absl::StatusOr<PatientRecord> SqliteStore::update_patient(const std::string& id, const PatientChange& change) {
   const std::lock_guard lock(mutex_);
   Transaction transaction(*database_);
   if (!transaction.status().ok()) return transaction.status();
+  const auto present = read_patient(id);
+  if (!present.ok()) return present.status();
+  const auto patient = change(*present);
+  if (!patient.ok()) return patient.status();
   Query update(*database_, "UPDATE patients SET display_name = ? WHERE id = ?");
-  absl::Status done = update.bind(patient.display_name, patient.id).run();
-  if (done.ok() && database_->changes() == 0) {
-    return absl::NotFoundError(absl::StrCat("there is no ", patient_name(patient.id)));
-  }
-  done.Update(write_labels(patient));
+  absl::Status done = update.bind(patient->display_name, id).run();
+  done.Update(write_labels(*patient));
   if (done.ok()) done.Update(transaction.commit());
-  return done;
+  if (!done.ok()) return done;
+  return patient;
 }
 
-absl::Status SqliteStore::delete_patient(const std::string& id, bool force) {
+absl::Status SqliteStore::delete_patient(const std::string& id, bool force, const PatientCheck& check) {
   const std::lock_guard lock(mutex_);
   Transaction transaction(*database_);
   if (!transaction.status().ok()) return transaction.status();
-  if (const auto patient = read_patient(id); !patient.ok()) return patient.status();
+  const auto patient = read_patient(id);
+  if (!patient.ok()) return patient.status();
+  if (check != nullptr) {
+    if (absl::Status fits = check(*patient); !fits.ok()) return fits;
+  }
   Query count(
       *database_,
       "SELECT (SELECT count(*) FROM scans WHERE patient = ?1), (SELECT count(*) FROM models WHERE patient = ?1)");

@@ -5,6 +5,7 @@ namespace lipofill::server {
 namespace {
 
 #define SIMULATION_COLUMNS "id, model, display_name, spec, state, reason, summary, create_time_us, origin"
+#define LAST_COMMAND "(SELECT coalesce(max(number), 0) FROM simulation_commands WHERE simulation = id)"
 
 SimulationRecord simulation_of(const Query& row) {
   SimulationRecord simulation;
@@ -17,6 +18,7 @@ SimulationRecord simulation_of(const Query& row) {
   simulation.summary_message = row.text(6);
   simulation.create_time_us = row.integer(7);
   simulation.origin = row.text(8);
+  simulation.last_command = row.unsigned_integer(9);
   return simulation;
 }
 
@@ -75,7 +77,7 @@ absl::StatusOr<SimulationRecord> SqliteStore::get_simulation(const std::string& 
 }
 
 absl::StatusOr<SimulationRecord> SqliteStore::read_simulation(const std::string& id) {
-  Query query(*database_, "SELECT " SIMULATION_COLUMNS " FROM simulations WHERE id = ?");
+  Query query(*database_, "SELECT " SIMULATION_COLUMNS ", " LAST_COMMAND " FROM simulations WHERE id = ?");
   if (query.bind(id).next()) return simulation_of(query);
   if (!query.status().ok()) return query.status();
   return no_simulation(id);
@@ -83,7 +85,8 @@ absl::StatusOr<SimulationRecord> SqliteStore::read_simulation(const std::string&
 
 absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_simulations(const Page& page) {
   const std::lock_guard lock(mutex_);
-  Query query(*database_, "SELECT " SIMULATION_COLUMNS " FROM simulations WHERE id > ? ORDER BY id LIMIT ?");
+  Query query(*database_,
+              "SELECT " SIMULATION_COLUMNS ", " LAST_COMMAND " FROM simulations WHERE id > ? ORDER BY id LIMIT ?");
   query.bind(page.after, page.size);
   std::vector<SimulationRecord> simulations;
   while (query.next()) simulations.push_back(simulation_of(query));
@@ -173,7 +176,8 @@ absl::Status SqliteStore::delete_simulation(const std::string& id) {
 
 absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_unended_simulations() {
   const std::lock_guard lock(mutex_);
-  Query query(*database_, "SELECT " SIMULATION_COLUMNS " FROM simulations WHERE state < ? ORDER BY id");
+  Query query(*database_,
+              "SELECT " SIMULATION_COLUMNS ", " LAST_COMMAND " FROM simulations WHERE state < ? ORDER BY id");
   query.bind(static_cast<int>(SimulationState::kSettled));
   std::vector<SimulationRecord> simulations;
   while (query.next()) simulations.push_back(simulation_of(query));

@@ -20,8 +20,8 @@ class SqliteStore : public Store {
   absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) override;
   absl::StatusOr<PatientRecord> get_patient(const std::string& id) override;
   absl::StatusOr<std::vector<PatientRecord>> list_patients(const Page& page) override;
-  absl::Status update_patient(const PatientRecord& patient) override;
-  absl::Status delete_patient(const std::string& id, bool force) override;
+  absl::StatusOr<PatientRecord> update_patient(const std::string& id, const PatientChange& change) override;
+  absl::Status delete_patient(const std::string& id, bool force, const PatientCheck& check = nullptr) override;
 
   absl::StatusOr<ScanRecord> create_scan(const ScanRecord& scan, const RequestKey& request) override;
   absl::StatusOr<ScanRecord> get_scan(const std::string& patient, const std::string& id) override;

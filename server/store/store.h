@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,10 +25,14 @@ class Store {
   virtual absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) = 0;
   virtual absl::StatusOr<PatientRecord> get_patient(const std::string& id) = 0;
   virtual absl::StatusOr<std::vector<PatientRecord>> list_patients(const Page& page) = 0;
-  /// Replaces display name and labels.
-  virtual absl::Status update_patient(const PatientRecord& patient) = 0;
-  /// Without `force` FAILED_PRECONDITION while it has scans or models; with it they go too.
-  virtual absl::Status delete_patient(const std::string& id, bool force) = 0;
+  /// Replaces display name and labels by what `change` makes of the present record; nobody comes between. What `change`
+  /// refuses is not done.
+  using PatientChange = std::function<absl::StatusOr<PatientRecord>(const PatientRecord& present)>;
+  virtual absl::StatusOr<PatientRecord> update_patient(const std::string& id, const PatientChange& change) = 0;
+  /// Without `force` FAILED_PRECONDITION while it has scans or models; with it they go too. `check`, if any, may
+  /// refuse.
+  using PatientCheck = std::function<absl::Status(const PatientRecord& present)>;
+  virtual absl::Status delete_patient(const std::string& id, bool force, const PatientCheck& check = nullptr) = 0;
 
   virtual absl::StatusOr<ScanRecord> create_scan(const ScanRecord& scan, const RequestKey& request) = 0;
   virtual absl::StatusOr<ScanRecord> get_scan(const std::string& patient, const std::string& id) = 0;

@@ -57,14 +57,29 @@ TEST_F(StoreTest, KeepsPatientsAcrossReopening) {
 
 TEST_F(StoreTest, UpdatesAndDeletesPatients) {
   add_patient("anna");
-  ASSERT_TRUE(store_->update_patient({"anna", "new", {{"k", "v"}}, 0}).ok());
+  const auto replace = [](const std::string& name, const std::map<std::string, std::string>& labels) {
+    return [=](PatientRecord present) -> absl::StatusOr<PatientRecord> {
+      present.display_name = name;
+      present.labels = labels;
+      return present;
+    };
+  };
+  ASSERT_TRUE(store_->update_patient("anna", replace("new", {{"k", "v"}})).ok());
   EXPECT_EQ(store_->get_patient("anna")->display_name, "new");
-  ASSERT_TRUE(store_->update_patient({"anna", "new", {}, 0}).ok());
+  ASSERT_TRUE(store_->update_patient("anna", replace("new", {})).ok());
   EXPECT_TRUE(store_->get_patient("anna")->labels.empty());
   EXPECT_TRUE(store_->delete_patient("anna", false).ok());
   EXPECT_TRUE(absl::IsNotFound(store_->get_patient("anna").status()));
   EXPECT_TRUE(absl::IsNotFound(store_->delete_patient("anna", false)));
-  EXPECT_TRUE(absl::IsNotFound(store_->update_patient({"anna", "", {}, 0})));
+  EXPECT_TRUE(absl::IsNotFound(store_->update_patient("anna", replace("", {})).status()));
+}
+
+TEST_F(StoreTest, LeavesAPatientWhoseChangeIsRefused) {
+  add_patient("anna");
+  const absl::Status refusal = absl::AbortedError("no");
+  EXPECT_EQ(store_->update_patient("anna", [&](const PatientRecord&) { return refusal; }).status(), refusal);
+  EXPECT_EQ(store_->delete_patient("anna", true, [&](const PatientRecord&) { return refusal; }), refusal);
+  EXPECT_TRUE(store_->get_patient("anna").ok());
 }
 
 TEST_F(StoreTest, RefusesASecondPatientOfTheSameId) {

@@ -18,6 +18,12 @@ find_package(VTK 9.1 REQUIRED COMPONENTS
   CommonCore CommonDataModel CommonExecutionModel CommonTransforms FiltersCore FiltersGeneral FiltersGeometry
   FiltersModeling FiltersSources FiltersVerdict IOGeometry IOImage IOLegacy IOPLY IOXML ImagingCore ImagingGeneral
   InteractionStyle RenderingCore RenderingAnnotation RenderingFreeType RenderingOpenGL2)
+# Debian's interpreter: its packages, gRPC among them, are not for others.
+find_program(LIPOFILL_PYTHON NAMES python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(NOT LIPOFILL_PYTHON)
+  find_program(LIPOFILL_PYTHON NAMES python3 REQUIRED)
+endif()
+find_program(GRPC_PYTHON_PLUGIN grpc_python_plugin REQUIRED)
 if(LIPOFILL_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)

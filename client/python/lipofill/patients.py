@@ -1,0 +1,43 @@
+"""Patients, under pseudonyms."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Iterator, Mapping, Optional
+
+from lipofill.v1 import patient_service_pb2 as pb
+
+if TYPE_CHECKING:
+    from lipofill.connection import Connection
+
+
+class Patients:
+    """The patients of a daemon."""
+
+    def __init__(self, connection: Connection) -> None:
+        self._connection = connection
+        self._stub = connection.patient_stub
+
+    def create(
+        self, patient_id: str = "", *, display_name: str = "", labels: Optional[Mapping[str, str]] = None
+    ) -> pb.Patient:
+        """A new patient. Ids, names and labels are pseudonyms: never a person's name.
+
+        Raises
+        ------
+        AlreadyExistsError
+            The id is taken.
+        InvalidArgumentError
+        """
+        request = pb.CreatePatientRequest(patient_id=patient_id, display_name=display_name, labels=labels)
+        return self._connection.call(self._stub.CreatePatient, request)
+
+    def get(self, name: str) -> pb.Patient:
+        return self._connection.call(self._stub.GetPatient, pb.GetPatientRequest(name=name))
+
+    def list(self) -> Iterator[pb.Patient]:
+        """All, by name."""
+        return self._connection.paged(self._stub.ListPatients, pb.ListPatientsRequest(), "patients")
+
+    def delete(self, name: str, *, force: bool = False) -> None:
+        """With `force` its scans and models go with it; without, FailedPreconditionError while it has some."""
+        self._connection.delete(self._stub.DeletePatient, pb.DeletePatientRequest(name=name, force=force))

@@ -75,6 +75,12 @@ def test_the_meshes_of_a_model_can_be_fetched(jaw, connection):
     assert meshes["tissue.cells"].shape == (2 * 40 * 31, 8)
 
 
+def test_the_surface_of_a_scan_can_be_fetched(jaw, connection):
+    (scan,) = connection.scans.list(jaw[0].patient)
+    meshes = connection.scans.download_mesh(scan.name)
+    assert meshes["scan.points"].shape == (scan.report.vertices, 3) and len(meshes["scan.cells"]) == scan.report.triangles
+
+
 def test_the_tissue_can_be_exported(jaw):
     assert b"*NODE" in jaw[0].tissue_deck().upper()
 
@@ -85,6 +91,46 @@ def test_the_distance_of_a_result_to_its_own_scan_is_what_was_injected(jaw, conn
     evaluation = run.evaluate(scan.name)
     assert evaluation.before_to_target.max_mm < 1e-3
     assert 0 < evaluation.simulated_to_target.max_mm <= result.summary.skin_max_displacement_mm + 1e-3
+
+
+def test_a_painted_zone_is_where_it_was_painted(connection):
+    painted = np.zeros((21, 21))
+    painted[4:17, 4:10] = 1.0
+    plan = make_plate()
+    plan.simulation.ClearField("films")
+    plan.simulation.injections[0].ClearField("site")
+    plan.film("deep", below="skin", n_xi=6, n_eta=6, zones={"middle": lipofill.samples(painted)})
+    run = connection.run(plan)
+    with run.watch(meshes=["skin"]) as frames, run:
+        *_, last = frames
+    lift = last["skin.displacement"][:, 2]
+    middle = last.meshes["skin.points"][:, 0].mean()
+    left = last.meshes["skin.points"][:, 0] < middle
+    assert lift[left].max() > 3 * lift[~left].max()
+
+
+def test_a_patient_is_changed_by_one_at_a_time(connection):
+    patient = connection.patients.create(display_name="first", labels={"side": "left"})
+    patient.display_name = "second"
+    changed = connection.patients.update(patient, "display_name")
+    assert changed.display_name == "second" and changed.labels == {"side": "left"}
+    with pytest.raises(lipofill.AbortedError):
+        connection.patients.update(patient, "display_name")
+    connection.patients.delete(patient.name)
+
+
+def test_what_is_only_checked_is_not_kept(connection, plate):
+    patient = connection.patients.create().name
+    connection.models.check(patient, plate.model)
+    assert not list(connection.models.list(patient))
+    plate.model.layers[0].poisson_ratio = 0.7
+    with pytest.raises(lipofill.InvalidArgumentError):
+        connection.models.check(patient, plate.model)
+    connection.patients.delete(patient)
+    with connection.run(make_plate()) as run:
+        before = [each.name for each in connection.simulations.list()]
+        assert connection.simulations.check(run.get().spec).summary.film_cells > 0
+        assert [each.name for each in connection.simulations.list()] == before
 
 
 def test_leaving_a_run_stops_it_and_takes_away_what_it_made(connection):

@@ -35,7 +35,7 @@ from lipofill.errors import (
     UnavailableError,
 )
 from lipofill.frames import Frame, Meshes
-from lipofill.places import at_chart, at_position, box, by_landmarks, constant, disc
+from lipofill.places import at_chart, at_position, box, by_landmarks, constant, disc, samples
 from lipofill.plans import Plan
 from lipofill.progress import Progress, print_progress
 from lipofill.retries import RetryPolicy
@@ -50,5 +50,5 @@ __all__ = [
     "DeadlineExceededError", "FailedPreconditionError", "FieldViolation", "Frame", "InvalidArgumentError", "LipofillError", "Meshes",
     "NotFoundError", "PermissionDeniedError", "Plan", "Progress", "ResourceExhaustedError", "RetryPolicy", "Run", "Series",
     "Simulation", "SimulationFailedError", "UnauthenticatedError", "UnavailableError", "Watch", "at_chart", "at_position", "box",
-    "by_landmarks", "constant", "disc", "print_progress",
+    "by_landmarks", "constant", "disc", "print_progress", "samples",
 ]  # fmt: skip

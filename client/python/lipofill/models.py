@@ -47,6 +47,10 @@ class Models:
             raise LipofillError(f"operation {done.name} ended without a model")
         return model
 
+    def check(self, patient: str, spec: model_pb2.ModelSpec) -> None:
+        """Raises what `build` would raise for the spec, as far as that is known without building."""
+        self._connection.call(self._stub.BuildModel, pb.BuildModelRequest(parent=patient, spec=spec, validate_only=True))
+
     def _build(self, request: pb.BuildModelRequest, progress: Optional[ProgressCallback]) -> Optional[pb_operation.Operation]:
         """None where the operation went with a daemon that ended: the same request then begins it anew, or finds what it made."""
         operation = self._connection.call(self._stub.BuildModel, request)

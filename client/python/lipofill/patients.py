@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Iterator, Mapping, Optional
 
+from google.protobuf.field_mask_pb2 import FieldMask
+
 from lipofill.v1 import patient_service_pb2 as pb
 
 if TYPE_CHECKING:
@@ -37,6 +39,17 @@ class Patients:
     def list(self) -> Iterator[pb.Patient]:
         """All, by name."""
         return self._connection.paged(self._stub.ListPatients, pb.ListPatientsRequest(), "patients")
+
+    def update(self, patient: pb.Patient, *fields: str) -> pb.Patient:
+        """Replaces the fields named, "display_name" and "labels"; both without a name.
+
+        Raises
+        ------
+        AbortedError
+            Someone changed the patient since `patient.etag` was read.
+        """
+        mask = FieldMask(paths=fields) if fields else None
+        return self._connection.call(self._stub.UpdatePatient, pb.UpdatePatientRequest(patient=patient, update_mask=mask))
 
     def delete(self, name: str, *, force: bool = False) -> None:
         """With `force` its scans and models go with it; without, FailedPreconditionError while it has some."""

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Mapping, Union
 
+import numpy as np
+import numpy.typing as npt
+
 from lipofill.v1 import geometry_pb2, simulation_pb2
 
-Shape = Union[geometry_pb2.ChartBox, simulation_pb2.Disc, str]
+Shape = Union[geometry_pb2.ChartBox, simulation_pb2.Disc, geometry_pb2.FieldSamples, str]
 
 
 def at_chart(xi: float, eta: float) -> geometry_pb2.SkinPoint:
@@ -35,6 +38,13 @@ def box(xi_min: float, xi_max: float, eta_min: float, eta_max: float) -> geometr
 def disc(centre: geometry_pb2.SkinPoint, radius_mm: float) -> simulation_pb2.Disc:
     """A round zone, by the straight distance from its centre."""
     return simulation_pb2.Disc(centre=centre, radius_mm=radius_mm)
+
+
+def samples(values: npt.ArrayLike) -> geometry_pb2.FieldSamples:
+    """A field by its values at points spaced evenly over the chart, both ends included: (n_eta, n_xi). Of a zone: where it is
+    painted, that is at least 0.5."""
+    array = np.asarray(values, dtype=float)
+    return geometry_pb2.FieldSamples(n_xi=array.shape[1], n_eta=array.shape[0], values=array.ravel())
 
 
 def constant(value: float) -> geometry_pb2.ScalarField:

@@ -176,7 +176,7 @@ class Plan:
         extent: Optional[geometry_pb2.ChartBox] = None,
         rest_thickness_mm: Optional[Field] = None,
     ) -> Plan:
-        """A film of fat under the layer `below`. A zone is a box or a disc of places, or a region such as "masseter_left"."""
+        """A film of fat under the layer `below`. A zone is a box, a disc or samples (painted), or a region's name."""
         film = self.simulation.films.add(name=name, below_layer=below, n_xi=n_xi, n_eta=n_eta, extent=extent)
         if rest_thickness_mm is not None:
             film.rest_thickness_mm.CopyFrom(_field(rest_thickness_mm))
@@ -185,6 +185,8 @@ class Plan:
                 film.zones.add(name=zone, region=shape)
             elif isinstance(shape, simulation_pb2.Disc):
                 film.zones.add(name=zone, disc=shape)
+            elif isinstance(shape, geometry_pb2.FieldSamples):
+                film.zones.add(name=zone, painted=shape)
             else:
                 film.zones.add(name=zone, box=shape)
         return self

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Iterator, Optional, Union
 import grpc
 
 from lipofill.errors import InvalidArgumentError, LipofillError, error_from_call
+from lipofill.frames import Meshes, meshes_from_slices
 from lipofill.progress import ProgressCallback, report
 from lipofill.retries import Attempts
 from lipofill.v1 import patient_service_pb2 as pb
@@ -153,6 +154,12 @@ class Scans:
     def list(self, patient: str) -> Iterator[pb.Scan]:
         """Of one patient, by name."""
         return self._connection.paged(self._stub.ListScans, pb.ListScansRequest(parent=patient), "scans")
+
+    def download_mesh(self, name: str) -> Meshes:
+        """The surface of a complete scan as it was read: ``scan.points`` in mm, ``scan.cells``."""
+        request = pb.DownloadScanMeshRequest(name=name)
+        stream = self._stub.DownloadScanMesh(request, timeout=self._connection.timeout_s, metadata=self._connection.metadata())
+        return meshes_from_slices(self._connection.stream_items(stream))
 
     def delete(self, name: str) -> None:
         """FailedPreconditionError while a model was built from it."""

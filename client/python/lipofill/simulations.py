@@ -24,9 +24,14 @@ _DEFAULT_END_S = 60.0
 Self = TypeVar("Self", bound="Simulation")
 
 
+_ENDED = (
+    messages.Simulation.SETTLED, messages.Simulation.FINISHED, messages.Simulation.STOPPED, messages.Simulation.FAILED
+)  # fmt: skip
+
+
 def has_ended(simulation: messages.Simulation) -> bool:
     """Whether it is SETTLED, FINISHED, STOPPED or FAILED."""
-    return simulation.state >= messages.Simulation.SETTLED
+    return simulation.state in _ENDED
 
 
 class Simulation:
@@ -248,6 +253,11 @@ class Simulations:
         )
         made = self._connection.call(self._stub.CreateSimulation, request, timeout_s=CREATION_TIMEOUT_S)
         return Simulation(self._connection, made.name)
+
+    def check(self, spec: messages.SimulationSpec) -> messages.Simulation:
+        """What `create` would answer, or raise; nothing is kept."""
+        request = pb.CreateSimulationRequest(spec=spec, validate_only=True)
+        return self._connection.call(self._stub.CreateSimulation, request, timeout_s=CREATION_TIMEOUT_S)
 
     def list(self) -> Iterator[messages.Simulation]:
         """All, by name."""

@@ -123,7 +123,7 @@ def test_what_is_only_checked_is_not_kept(connection, plate):
     patient = connection.patients.create().name
     connection.models.check(patient, plate.model)
     assert not list(connection.models.list(patient))
-    plate.model.layers[0].poisson_ratio = 0.7
+    plate.model.layers[0].ClearField("youngs_modulus_kpa")
     with pytest.raises(lipofill.InvalidArgumentError):
         connection.models.check(patient, plate.model)
     connection.patients.delete(patient)

@@ -1,0 +1,69 @@
+// Files that browsers get: the built page, and the sample faces and plans.
+import { createReadStream } from "node:fs";
+import { stat } from "node:fs/promises";
+import type { IncomingMessage, ServerResponse } from "node:http";
+import { extname, join, normalize, sep } from "node:path";
+import { pipeline } from "node:stream/promises";
+
+const types: Record<string, string> = {
+  ".html": "text/html; charset=utf-8",
+  ".js": "text/javascript; charset=utf-8",
+  ".css": "text/css; charset=utf-8",
+  ".json": "application/json",
+  ".svg": "image/svg+xml",
+  ".png": "image/png",
+  ".obj": "text/plain; charset=utf-8",
+};
+
+// The page runs what came with it, and nothing else.
+const policy =
+  "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; " +
+  "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/** A file below `folder` by its path in the address; undefined where the path leads out of it. */
+export function locate(folder: string, path: string): string | undefined {
+  let decoded: string;
+  try {
+    decoded = decodeURIComponent(path);
+  } catch {
+    return undefined;
+  }
+  if (decoded.includes("\0")) return undefined;
+  const file = normalize(join(folder, decoded));
+  return file.startsWith(folder + sep) ? file : undefined;
+}
+
+function refuse(response: ServerResponse, status: number, text: string): void {
+  response.writeHead(status, { "content-type": "text/plain; charset=utf-8" });
+  response.end(`${text}\n`);
+}
+
+async function sendFile(file: string, request: IncomingMessage, response: ServerResponse): Promise<void> {
+  const found = await stat(file).catch(() => undefined);
+  if (found === undefined || !found.isFile()) return refuse(response, 404, "not found");
+  const lasting = /\/assets\//.test(file); // named by their content
+  response.writeHead(200, {
+    "content-type": types[extname(file)] ?? "application/octet-stream",
+    "content-length": found.size,
+    "cache-control": lasting ? "public, max-age=31536000, immutable" : "no-cache",
+    "content-security-policy": policy,
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+  });
+  if (request.method === "HEAD") {
+    response.end();
+    return;
+  }
+  await pipeline(createReadStream(file), response).catch(() => response.destroy());
+}
+
+export function servePages(page: string, samples: string) {
+  return (request: IncomingMessage, response: ServerResponse): void => {
+    if (request.method !== "GET" && request.method !== "HEAD") return refuse(response, 405, "only GET");
+    const path = (request.url ?? "/").split("?")[0];
+    const sample = path.startsWith("/samples/") && samples !== "";
+    const file = sample ? locate(samples, path.slice("/samples/".length)) : locate(page, path === "/" ? "/index.html" : path);
+    if (file === undefined) return refuse(response, 404, "not found");
+    void sendFile(file, request, response);
+  };
+}

@@ -1,0 +1,108 @@
+// Every method of the service, passed on to the daemon as it is.
+//
+// Nothing is kept here: a stream's next message is taken from the daemon when the browser has room for it, so a slow
+// browser slows its own stream, by the flow control of both connections, and costs no memory. The transport connects
+// again by itself when the daemon comes back.
+import type { DescMethod, DescMethodStreaming, DescMethodUnary, DescService, Message } from "@bufbuild/protobuf";
+import { Code, ConnectError, type ConnectRouter, type HandlerContext, type Transport } from "@connectrpc/connect";
+import { createGrpcTransport } from "@connectrpc/connect-node";
+import { readFileSync } from "node:fs";
+import { connect as connectSocket } from "node:net";
+import { FrameService } from "@wire/frame_service_pb";
+import { OperationService } from "@wire/operation_service_pb";
+import { PatientService } from "@wire/patient_service_pb";
+import { SimulationService } from "@wire/simulation_service_pb";
+
+const services = [FrameService, OperationService, PatientService, SimulationService];
+const passedOn = ["authorization", "x-request-id", "traceparent"];
+const passedBack = ["x-request-id"];
+
+/** @param daemon host:port or unix:/path */
+export function connectDaemon(daemon: string, caFile: string): Transport {
+  const path = daemon.startsWith("unix:") ? daemon.slice("unix:".length) : undefined;
+  const scheme = caFile ? "https" : "http";
+  return createGrpcTransport({
+    baseUrl: path === undefined ? `${scheme}://${daemon}` : "http://localhost",
+    nodeOptions: {
+      settings: { initialWindowSize: 1 << 20 },
+      ...(path === undefined ? {} : { createConnection: () => connectSocket(path) }),
+      ...(caFile ? { ca: readFileSync(caFile) } : {}),
+    },
+    idleConnectionTimeoutMs: 60_000,
+  });
+}
+
+function forward(headers: Headers): Headers {
+  const out = new Headers();
+  for (const name of passedOn) {
+    const value = headers.get(name);
+    if (value !== null) out.set(name, value);
+  }
+  return out;
+}
+
+function answer(from: Headers, context: HandlerContext): void {
+  for (const name of passedBack) {
+    const value = from.get(name);
+    if (value !== null) context.responseHeader.set(name, value);
+  }
+}
+
+/** What the daemon says stays as it is; that it cannot be reached is said in words for people. */
+function explain(cause: unknown): ConnectError {
+  const error = ConnectError.from(cause);
+  const unreachable = error.code === Code.Unavailable && error.details.length === 0 && /ECONN|ENOENT|socket|EPIPE/i.test(error.rawMessage);
+  return unreachable ? new ConnectError("the daemon cannot be reached", Code.Unavailable) : error;
+}
+
+async function* only<T>(value: T): AsyncIterable<T> {
+  yield value;
+}
+
+function makeUnary(transport: Transport, method: DescMethodUnary) {
+  return async (request: Message, context: HandlerContext): Promise<Message> => {
+    try {
+      const response = await transport.unary(method, context.signal, context.timeoutMs(), forward(context.requestHeader), request);
+      answer(response.header, context);
+      return response.message;
+    } catch (error) {
+      throw explain(error);
+    }
+  };
+}
+
+async function* passStream(transport: Transport, method: DescMethodStreaming, requests: AsyncIterable<Message>, context: HandlerContext) {
+  try {
+    const response = await transport.stream(method, context.signal, context.timeoutMs(), forward(context.requestHeader), requests);
+    answer(response.header, context);
+    yield* response.message;
+  } catch (error) {
+    throw explain(error);
+  }
+}
+
+function makeHandler(transport: Transport, method: DescMethod) {
+  switch (method.methodKind) {
+    case "unary":
+      return makeUnary(transport, method as DescMethodUnary);
+    case "client_streaming":
+      return async (requests: AsyncIterable<Message>, context: HandlerContext): Promise<Message> => {
+        for await (const response of passStream(transport, method as DescMethodStreaming, requests, context)) return response;
+        throw new ConnectError("the daemon gave no answer", Code.Internal);
+      };
+    case "server_streaming":
+      return (request: Message, context: HandlerContext) => passStream(transport, method as DescMethodStreaming, only(request), context);
+    default:
+      return (requests: AsyncIterable<Message>, context: HandlerContext) => passStream(transport, method as DescMethodStreaming, requests, context);
+  }
+}
+
+/** All services of the daemon, as gRPC-Web, Connect and gRPC. */
+export function passOn(transport: Transport): (router: ConnectRouter) => void {
+  return (router) => {
+    for (const service of services as DescService[]) {
+      const handlers = Object.fromEntries(service.methods.map((method) => [method.localName, makeHandler(transport, method)]));
+      router.service(service, handlers as never);
+    }
+  };
+}

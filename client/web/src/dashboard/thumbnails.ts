@@ -1,0 +1,144 @@
+// Small pictures of many simulations, one after the other: a stream is opened for a frame and left again, so that a wall
+// of them takes one connection and one canvas.
+import { ArrayType } from "@wire/frame_service_pb";
+import { Simulation_State, type Simulation } from "@wire/simulation_pb";
+import { ArrayAssembler, toNumbers } from "../api/arrays";
+import { frames } from "../api/client";
+import { meshesOf, trianglesOf, type Mesh } from "../api/meshes";
+import { mapFor, paint, skinColour } from "../scene/colour_maps";
+import { largestOf } from "../scene/face_colours";
+import { Surface } from "../scene/surface";
+import { computeNormals, type Point } from "../scene/surface_geometry";
+import { Viewport } from "../scene/viewport";
+
+const [width, height] = [320, 240];
+const pauseMs = 250;
+
+export class Thumbnails {
+  private readonly holder = document.createElement("div");
+  private readonly viewport: Viewport;
+  private readonly leave = new AbortController();
+  private wanted: Simulation[] = [];
+  /** step that the picture of a simulation shows */
+  private readonly shown = new Map<string, bigint>();
+  private readonly urls = new Map<string, string>();
+  private next = 0;
+
+  constructor(private readonly done: (name: string, url: string) => void) {
+    Object.assign(this.holder.style, { position: "fixed", left: "-2000px", top: "0", width: `${width}px`, height: `${height}px` });
+    document.body.append(this.holder);
+    this.viewport = new Viewport(this.holder);
+    void this.turn();
+  }
+
+  want(simulations: Simulation[]): void {
+    this.wanted = simulations;
+    const names = new Set(simulations.map(({ name }) => name));
+    for (const [name, url] of this.urls) {
+      if (names.has(name)) continue;
+      URL.revokeObjectURL(url);
+      this.urls.delete(name);
+    }
+  }
+
+  private async turn(): Promise<void> {
+    while (!this.leave.signal.aborted) {
+      const due = this.choose();
+      if (due) await this.picture(due).catch(() => this.shown.set(due.name, due.summary?.steps ?? 0n));
+      await new Promise((resolve) => setTimeout(resolve, pauseMs));
+    }
+  }
+
+  /** The next in the round whose picture is not of its step. */
+  private choose(): Simulation | undefined {
+    for (let k = 0; k < this.wanted.length; ++k) {
+      const one = this.wanted[(this.next + k) % this.wanted.length];
+      if (one.state === Simulation_State.FAILED || this.shown.get(one.name) === (one.summary?.steps ?? 0n)) continue;
+      this.next = (this.next + k + 1) % this.wanted.length;
+      return one;
+    }
+    return undefined;
+  }
+
+  private async picture(simulation: Simulation): Promise<void> {
+    const step = simulation.summary?.steps ?? 0n;
+    const { mesh, displacement } = await this.fetch(simulation.name);
+    const surface = new Surface(mesh.points, trianglesOf(mesh));
+    surface.move(displacement);
+    colour(surface, displacement);
+    this.viewport.add(surface.actor);
+    const { focus, direction, up, halfHeight } = viewOf(surface);
+    this.viewport.lookAt(focus, direction, up, halfHeight);
+    const picture = await this.viewport.capture();
+    this.viewport.remove(surface.actor);
+    surface.dispose();
+    const before = this.urls.get(simulation.name);
+    if (before) URL.revokeObjectURL(before);
+    const url = URL.createObjectURL(picture);
+    this.urls.set(simulation.name, url);
+    this.shown.set(simulation.name, step);
+    this.done(simulation.name, url);
+  }
+
+  private async fetch(simulation: string): Promise<{ mesh: Mesh; displacement: Float32Array }> {
+    const assembler = new ArrayAssembler();
+    const enough = new AbortController();
+    const end = (): void => enough.abort();
+    this.leave.signal.addEventListener("abort", end);
+    let mesh: Mesh | undefined;
+    try {
+      for await (const { message } of frames.watch({ simulation, fields: ["skin.displacement"], fieldType: ArrayType.UINT16 }, { signal: enough.signal })) {
+        if (message.case === "mesh") {
+          message.value.arrays.forEach((array) => assembler.add(array));
+          if (message.value.last) mesh = meshesOf(assembler.take()).get("skin");
+        } else if (message.case === "frame") {
+          message.value.fields.forEach((array) => assembler.add(array));
+          const field = message.value.last ? assembler.take().get("skin.displacement") : undefined;
+          if (field && mesh) return { mesh, displacement: toNumbers(field) };
+        }
+      }
+    } finally {
+      this.leave.signal.removeEventListener("abort", end);
+      end();
+    }
+    throw new Error(`${simulation} showed no frame`);
+  }
+
+  dispose(): void {
+    this.leave.abort();
+    this.urls.forEach((url) => URL.revokeObjectURL(url));
+    this.viewport.dispose();
+    this.holder.remove();
+  }
+}
+
+function colour(surface: Surface, displacement: Float32Array): void {
+  const moved = new Float32Array(surface.count);
+  for (let k = 0; k < moved.length; ++k) moved[k] = Math.hypot(displacement[3 * k], displacement[3 * k + 1], displacement[3 * k + 2]);
+  const map = mapFor("displacement", largestOf(moved));
+  for (let k = 0; k < moved.length; ++k) {
+    if (moved[k] > 0.05) paint(map, moved[k], surface.colours, 3 * k);
+    else surface.colours.set(skinColour, 3 * k);
+  }
+  surface.recolour();
+}
+
+/** From outside, a little from below: a bulge shows against the light. */
+function viewOf(surface: Surface): { focus: Point; direction: Point; up: Point; halfHeight: number } {
+  const [low, high]: [Point, Point] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  const normals = new Float32Array(surface.points.length);
+  computeNormals(surface.rest, surface.triangles, normals);
+  const outward: Point = [0, 0, 0];
+  for (let k = 0; k < normals.length; ++k) {
+    const c = k % 3;
+    outward[c] += normals[k];
+    low[c] = Math.min(low[c], surface.rest[k]);
+    high[c] = Math.max(high[c], surface.rest[k]);
+  }
+  const focus = low.map((v, c) => (v + high[c]) / 2) as Point;
+  const length = Math.hypot(...outward) || 1;
+  const direction = outward.map((v) => v / length) as Point;
+  const flat = Math.abs(direction[2]) > 0.99;
+  const slanted: Point = flat ? [0, -0.7, 0.714] : direction;
+  return { focus, direction: slanted, up: flat ? [0, 0, 1] : [0, 1, 0], halfHeight: 0.62 * Math.max(...low.map((v, c) => high[c] - v)) };
+}

@@ -1,0 +1,5 @@
+import { render } from "preact";
+import { App } from "./ui/app";
+import "./ui/style.css";
+
+render(<App />, document.getElementById("page")!);

@@ -1,0 +1,76 @@
+// The plan under work, and what it stands on: the scan, the model built from it.
+import { clone, toJsonString } from "@bufbuild/protobuf";
+import { batch, computed, signal } from "@preact/signals";
+import type { Scan } from "@wire/patient_service_pb";
+import { ModelSpecSchema, type Model } from "@wire/model_pb";
+import { PlanSchema, ScanUnit, type Plan } from "@wire/plan_pb";
+import { token } from "../api/client";
+import { toProblem, type Problem, type Violation } from "../api/errors";
+import type { Mesh } from "../api/meshes";
+import { Chart } from "./chart";
+import { newPlan } from "./new_plan";
+
+export const plan = signal<Plan>(newPlan());
+export const patient = signal("");
+export const scan = signal<Scan | undefined>(undefined);
+export const scanMesh = signal<Mesh | undefined>(undefined);
+/** name and unit of the file the scan came from, for the plan file */
+export const scanFile = signal({ name: "face.obj", unit: ScanUnit.MILLIMETRE });
+export const model = signal<Model | undefined>(undefined);
+export const modelMeshes = signal<Map<string, Mesh> | undefined>(undefined);
+/** of the specification that `model` was built from */
+const builtFrom = signal("");
+
+export const violations = signal<Violation[]>([]);
+export const problem = signal<Problem | undefined>(undefined);
+export const notice = signal("");
+export const busy = signal<{ label: string; share: number | undefined } | undefined>(undefined);
+
+export const chart = computed(() => {
+  const skin = modelMeshes.value?.get("skin");
+  return skin === undefined ? undefined : new Chart(skin);
+});
+export const region = computed(() => {
+  const geometry = plan.value.model?.geometry;
+  return geometry?.case === "scanRegion" ? geometry.value : undefined;
+});
+export const zones = computed(() => (plan.value.simulation?.films ?? []).flatMap((film) => film.zones.map((zone) => ({ film, zone }))));
+
+const specText = computed(() => (plan.value.model ? toJsonString(ModelSpecSchema, plan.value.model) : ""));
+/** Whether the model is the one that the plan describes. */
+export const modelIsCurrent = computed(() => model.value !== undefined && builtFrom.value === specText.value);
+
+export function editPlan(change: (next: Plan) => void): void {
+  const next = clone(PlanSchema, plan.value);
+  change(next);
+  plan.value = next;
+}
+
+export function setModel(built: Model | undefined, meshes: Map<string, Mesh> | undefined): void {
+  batch(() => {
+    modelMeshes.value = meshes;
+    model.value = built;
+    builtFrom.value = built === undefined ? "" : specText.value;
+  });
+}
+
+/** Runs something that may take long or fail; says so on the page. Whether it went well. */
+export async function attempt(label: string, work: (progress: (share: number, label?: string) => void) => Promise<void>): Promise<boolean> {
+  busy.value = { label, share: undefined };
+  problem.value = undefined;
+  try {
+    await work((share, now) => (busy.value = { label: now ?? label, share }));
+    return true;
+  } catch (error) {
+    tell(error);
+    return false;
+  } finally {
+    busy.value = undefined;
+  }
+}
+
+/** @param part  of the plan that the daemon was asked about: its violations go beside the fields */
+export function tell(error: unknown): void {
+  problem.value = toProblem(error);
+  if (problem.value.unknownCaller) notice.value = token.value ? "The token is not accepted." : "The daemon asks who you are: give a token.";
+}

@@ -1,0 +1,164 @@
+// The simulation on the page: created from the plan, steered, watched; or one that is over.
+import { batch, computed, signal } from "@preact/signals";
+import { Code, ConnectError } from "@connectrpc/connect";
+import { Simulation_State, type Injection, type SeriesRow, type Simulation } from "@wire/simulation_pb";
+import { newId, simulations } from "../api/client";
+import { toProblem } from "../api/errors";
+import type { Mesh } from "../api/meshes";
+import { watch, type Frame, type Listener } from "../api/watch";
+import { simulationSpec } from "../plan/actions";
+import { attempt, modelIsCurrent, plan, tell, violations } from "../plan/state";
+import { toPlanFields } from "../plan/violations";
+import { FrameStore } from "./frame_store";
+
+export const simulation = signal<Simulation | undefined>(undefined);
+export const connection = signal<"idle" | "live" | "lost">("idle");
+export const rows = signal<SeriesRow[]>([]);
+export const meshes = signal<Map<string, Mesh> | undefined>(undefined);
+export const frame = signal<Frame | undefined>(undefined);
+/** simulated time that is looked at; undefined: the newest */
+export const lookedAt = signal<number | undefined>(undefined);
+export const skipped = signal(0);
+export const store = new FrameStore();
+/** "scan" or, without one, "skin" */
+export const faceMesh = signal("scan");
+/** a folder of results on this machine */
+export const recorded = signal("");
+
+export const state = computed(() => simulation.value?.state ?? Simulation_State.STATE_UNSPECIFIED);
+export const isUnderWay = computed(() => [Simulation_State.READY, Simulation_State.RUNNING, Simulation_State.PAUSED].includes(state.value));
+export const hasResult = computed(() => frame.value !== undefined && (recorded.value !== "" || (simulation.value?.summary?.steps ?? 0n) > 0n));
+
+let leave = new AbortController();
+const pollMs = 400;
+const mostRows = 20_000;
+
+const listener: Listener = {
+  meshes: (next) => (meshes.value = next),
+  connection: (next) => (connection.value = next),
+  frame(next, skippedBefore) {
+    if (frame.value !== undefined && next.epoch !== store.latest?.epoch) store.dropAfter(next.sequence - 1n);
+    store.add(next);
+    batch(() => {
+      skipped.value += skippedBefore;
+      if (lookedAt.value === undefined) frame.value = next;
+    });
+  },
+};
+
+/** Forgets what is shown; the simulation itself goes on. */
+export function close(): void {
+  leave.abort();
+  leave = new AbortController();
+  store.clear();
+  batch(() => {
+    [simulation.value, frame.value, meshes.value, lookedAt.value, recorded.value] = [undefined, undefined, undefined, undefined, ""];
+    [rows.value, skipped.value, connection.value] = [[], 0, "idle"];
+  });
+}
+
+async function follow(name: string, face: string): Promise<void> {
+  const { signal: left } = leave;
+  faceMesh.value = face;
+  const fields = ["displacement", "pressure", "thickness"].map((field) => `${face}.${field}`);
+  void poll(name, left);
+  try {
+    await watch({ simulation: name, fields, maxRateHz: 60, signal: left }, listener);
+    if (!left.aborted) connection.value = "idle";
+  } catch (error) {
+    const wrongField = ConnectError.from(error).code === Code.InvalidArgument || ConnectError.from(error).code === Code.NotFound;
+    if (wrongField && face === "scan" && meshes.value === undefined) return follow(name, "skin");
+    if (!left.aborted) tell(error);
+  }
+}
+
+/** Figures and series, until the simulation is over and all of them are here. */
+async function poll(name: string, left: AbortSignal): Promise<void> {
+  for (;;) {
+    try {
+      const now = await simulations.getSimulation({ name }, { signal: left });
+      let more = true;
+      while (more && !left.aborted) {
+        const afterStep = rows.value.at(-1)?.step ?? 0n;
+        const response = await simulations.getSeries({ name, afterStep }, { signal: left });
+        more = response.more;
+        if (!left.aborted && response.rows.length > 0) rows.value = keepRows([...rows.value, ...response.rows]);
+      }
+      if (left.aborted) return;
+      simulation.value = now;
+      if (!isUnderWay.value) return;
+    } catch (error) {
+      if (left.aborted) return;
+      if (!toProblem(error).lost) return tell(error);
+      connection.value = "lost";
+    }
+    await new Promise((resolve) => setTimeout(resolve, pollMs));
+  }
+}
+
+/** In the order of time, coarser where there are too many; a return to an earlier state takes later rows away. */
+function keepRows(all: SeriesRow[]): SeriesRow[] {
+  return all.length <= mostRows ? all : all.filter((_, index) => index % 2 === 0 || index === all.length - 1);
+}
+
+/** Shows a simulation of the daemon. */
+export function open(next: Simulation, face = "scan"): void {
+  close();
+  simulation.value = next;
+  void follow(next.name, face);
+}
+
+const planFace = (): string => (plan.value.model?.geometry.case === "scanRegion" ? "scan" : "skin");
+
+/** The plan as a simulation that waits for its start. Violations go beside their fields. */
+export async function create(start: boolean): Promise<boolean> {
+  violations.value = [];
+  return attempt("Setting up the simulation", async () => {
+    const displayName = plan.value.name.toLowerCase().replace(/[^a-z0-9]+/g, "-").slice(0, 63);
+    try {
+      open(await simulations.createSimulation({ requestId: newId(), displayName, spec: simulationSpec(), start }), planFace());
+    } catch (error) {
+      violations.value = toPlanFields(toProblem(error).violations, "simulation");
+      throw error;
+    }
+  });
+}
+
+type Command = "startSimulation" | "pauseSimulation" | "resumeSimulation" | "stopSimulation";
+
+export async function command(which: Command): Promise<void> {
+  const name = simulation.value?.name;
+  if (name === undefined) return;
+  try {
+    simulation.value = await simulations[which]({ name, requestId: newId() });
+  } catch (error) {
+    tell(error);
+  }
+}
+
+export async function inject(injection: Injection): Promise<boolean> {
+  violations.value = [];
+  try {
+    simulation.value = await simulations.inject({ name: simulation.value!.name, injection, requestId: newId() });
+    return true;
+  } catch (error) {
+    violations.value = toProblem(error).violations;
+    tell(error);
+    return false;
+  }
+}
+
+/** Runs the plan, or goes on with what is under way. */
+export async function runOrPause(): Promise<void> {
+  if (state.value === Simulation_State.RUNNING) return command("pauseSimulation");
+  if (state.value === Simulation_State.PAUSED) return command("resumeSimulation");
+  if (modelIsCurrent.value) await create(true);
+}
+
+/** Looks at a simulated time; undefined: follows the newest. */
+export function lookAt(timeS: number | undefined): void {
+  batch(() => {
+    lookedAt.value = timeS;
+    frame.value = timeS === undefined ? store.latest : store.at(timeS);
+  });
+}

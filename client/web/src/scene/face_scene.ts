@@ -1,0 +1,186 @@
+// The face on the page: before and after, its region and layers, what a frame colours, what lies under the cursor.
+import { trianglesOf, type Mesh } from "../api/meshes";
+import type { Frame } from "../api/watch";
+import type { ColourMap, Quantity, Rgb } from "./colour_maps";
+import { skinColour } from "./colour_maps";
+import { colourFace, FrameReader, largestOf, RunningMap, valuesOf, type FaceNumbers } from "./face_colours";
+import { makeLayers } from "./layers";
+import { Markers } from "./markers";
+import { Surface } from "./surface";
+import { castRay, valueAt, type Hit, type Point } from "./surface_geometry";
+import { Viewport } from "./viewport";
+
+export interface Probe {
+  point: Point;
+  displacementMm: number;
+  pressureMmHg: number;
+  thicknessMm: number;
+  distanceMm: number | undefined;
+}
+
+export class FaceScene {
+  readonly viewport: Viewport;
+  readonly markers: Markers;
+  private before: { viewport: Viewport; surface: Surface | undefined } | undefined;
+  private face: Surface | undefined;
+  private faceMesh: Mesh | undefined;
+  private patch: Surface | undefined;
+  private layers: Surface[] = [];
+  private readonly reader = new FrameReader();
+  private readonly running = new RunningMap();
+  private numbers: FaceNumbers | undefined;
+  private distance: Float32Array | undefined;
+  /** told when the colour map is another one */
+  onMap: (map: ColourMap) => void = () => undefined;
+
+  constructor(container: HTMLElement) {
+    this.viewport = new Viewport(container);
+    this.markers = new Markers(this.viewport);
+  }
+
+  get hasFace(): boolean {
+    return this.face !== undefined;
+  }
+  get mesh(): Mesh | undefined {
+    return this.faceMesh;
+  }
+  get points(): Float32Array | undefined {
+    return this.face?.points;
+  }
+
+  setFace(mesh: Mesh | undefined): void {
+    if (mesh === this.faceMesh) return;
+    if (this.face) {
+      this.viewport.remove(this.face.actor);
+      this.face.dispose();
+    }
+    [this.faceMesh, this.numbers, this.distance] = [mesh, undefined, undefined];
+    this.running.forget();
+    this.face = mesh && new Surface(mesh.points, trianglesOf(mesh));
+    if (this.face) this.viewport.add(this.face.actor);
+    if (this.before) this.fillBefore();
+    this.viewport.request();
+  }
+
+  /** The region's skin over the face, coloured a vertex. */
+  setPatch(skin: Mesh | undefined, colour: (vertex: number) => Rgb | undefined): void {
+    if (this.patch) {
+      this.viewport.remove(this.patch.actor);
+      this.patch.dispose();
+      this.patch = undefined;
+    }
+    if (skin) {
+      this.patch = new Surface(skin.points, trianglesOf(skin));
+      this.patch.lift(0.35);
+      this.patch.opacity = 0.82;
+      this.viewport.add(this.patch.actor);
+      this.colourPatch(colour);
+    }
+    this.viewport.request();
+  }
+
+  colourPatch(colour: (vertex: number) => Rgb | undefined): void {
+    if (!this.patch) return;
+    for (let k = 0; k < this.patch.count; ++k) this.patch.colours.set(colour(k) ?? [206, 214, 214], 3 * k);
+    this.patch.recolour();
+    this.viewport.request();
+  }
+
+  /** @param shown  whether each of the model's layers is; the face is then seen through */
+  setLayers(tissue: Mesh | undefined, elementsThrough: number[], shown: boolean[]): void {
+    for (const layer of this.layers) {
+      this.viewport.remove(layer.actor);
+      layer.dispose();
+    }
+    this.layers = tissue === undefined ? [] : makeLayers(tissue, elementsThrough);
+    this.layers.forEach((layer, index) => {
+      layer.edges = true;
+      layer.visible = shown[index] ?? true;
+      this.viewport.add(layer.actor);
+    });
+    if (this.face) this.face.opacity = this.layers.length > 0 ? 0.18 : 1;
+    if (this.patch) this.patch.visible = this.layers.length === 0;
+    this.viewport.request();
+  }
+
+  setDistance(vertices: ArrayLike<number>, values: ArrayLike<number>): void {
+    if (!this.face) return;
+    this.distance = new Float32Array(this.face.count).fill(NaN);
+    for (let k = 0; k < vertices.length; ++k) this.distance[vertices[k]] = values[k];
+  }
+  forgetDistance(): void {
+    this.distance = undefined;
+  }
+
+  /** Moves and colours the face as a frame has it; without one it is at rest. */
+  show(frame: Frame | undefined, quantity: Quantity | "none"): void {
+    if (!this.face || !this.faceMesh) return;
+    if (frame === undefined) {
+      this.numbers = undefined;
+      this.face.move();
+      this.face.fill(skinColour);
+      this.face.recolour();
+    } else {
+      this.numbers = this.reader.read(frame, this.faceMesh.name, this.face.count);
+      this.face.move(this.numbers.displacement);
+      const values = quantity === "none" ? undefined : valuesOf(quantity, this.numbers, this.distance);
+      if (quantity !== "none" && this.running.fit(quantity, values === undefined ? 1 : largestOf(values))) this.onMap(this.running.map);
+      colourFace(this.face, values === undefined ? "none" : quantity, this.numbers, this.distance, this.running.map);
+    }
+    this.viewport.request();
+  }
+
+  hit(clientX: number, clientY: number): Hit | undefined {
+    if (!this.face) return undefined;
+    const { from, along } = this.viewport.rayAt(clientX, clientY);
+    return castRay(this.face.points, this.face.triangles, from, along);
+  }
+  hitPatch(clientX: number, clientY: number): Hit | undefined {
+    if (!this.patch) return undefined;
+    const { from, along } = this.viewport.rayAt(clientX, clientY);
+    return castRay(this.patch.rest, this.patch.triangles, from, along);
+  }
+
+  probe(clientX: number, clientY: number): Probe | undefined {
+    const hit = this.hit(clientX, clientY);
+    if (!hit || !this.face || !this.numbers) return undefined;
+    const at = (values: Float32Array): number => valueAt(values, this.face!.triangles, hit);
+    const distance = this.distance === undefined ? NaN : at(this.distance);
+    return {
+      point: hit.point, displacementMm: at(this.numbers.moved), pressureMmHg: at(this.numbers.pressure), thicknessMm: at(this.numbers.thickness),
+      distanceMm: Number.isNaN(distance) ? undefined : distance,
+    };
+  }
+
+  /** A second picture, of the face before, turned as the first. */
+  compare(container: HTMLElement | undefined): void {
+    this.before?.viewport.dispose();
+    this.before?.surface?.dispose();
+    this.before = undefined;
+    this.viewport.onCamera = () => undefined;
+    if (container === undefined) return;
+    const viewport = new Viewport(container);
+    this.before = { viewport, surface: undefined };
+    this.viewport.onCamera = (pose) => (viewport.pose = pose);
+    viewport.onCamera = (pose) => (this.viewport.pose = pose);
+    viewport.pose = this.viewport.pose;
+    this.fillBefore();
+  }
+
+  private fillBefore(): void {
+    const before = this.before!;
+    if (before.surface) {
+      before.viewport.remove(before.surface.actor);
+      before.surface.dispose();
+    }
+    before.surface = this.faceMesh && new Surface(this.faceMesh.points, trianglesOf(this.faceMesh));
+    if (before.surface) before.viewport.add(before.surface.actor);
+    before.viewport.request();
+  }
+
+  dispose(): void {
+    this.compare(undefined);
+    this.markers.clear();
+    this.viewport.dispose();
+  }
+}

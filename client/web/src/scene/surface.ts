@@ -1,0 +1,100 @@
+// A surface in the scene: it moves, and every vertex has a colour.
+import vtkDataArray from "@kitware/vtk.js/Common/Core/DataArray";
+import vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
+import vtkActor from "@kitware/vtk.js/Rendering/Core/Actor";
+import vtkMapper from "@kitware/vtk.js/Rendering/Core/Mapper";
+import { computeNormals } from "./surface_geometry";
+import { skinColour, type Rgb } from "./colour_maps";
+
+export class Surface {
+  readonly actor = vtkActor.newInstance();
+  /** as shown [mm] (3 n) */
+  readonly points: Float32Array;
+  readonly normals: Float32Array;
+  /** (3 n) bytes, changed by whoever paints, then shown by recolour() */
+  readonly colours: Uint8Array;
+  private readonly data = vtkPolyData.newInstance();
+  private readonly normalArray: vtkDataArray;
+  private readonly colourArray: vtkDataArray;
+
+  constructor(readonly rest: Float32Array, readonly triangles: Uint32Array, colour: Rgb = skinColour) {
+    this.points = rest.slice();
+    this.normals = new Float32Array(rest.length);
+    this.colours = new Uint8Array(rest.length);
+    this.fill(colour);
+    computeNormals(this.points, triangles, this.normals);
+    this.data.getPoints().setData(this.points, 3);
+    this.data.getPolys().setData(listed(triangles));
+    this.normalArray = vtkDataArray.newInstance({ name: "normals", numberOfComponents: 3, values: this.normals });
+    this.colourArray = vtkDataArray.newInstance({ name: "colours", numberOfComponents: 3, values: this.colours });
+    this.data.getPointData().setNormals(this.normalArray);
+    this.data.getPointData().setScalars(this.colourArray);
+    const mapper = vtkMapper.newInstance();
+    mapper.setInputData(this.data);
+    mapper.setColorModeToDirectScalars();
+    this.actor.setMapper(mapper);
+    const property = this.actor.getProperty();
+    property.setAmbient(0.22);
+    property.setDiffuse(0.78);
+    property.setSpecular(0.06);
+    property.setSpecularPower(18);
+  }
+
+  get count(): number {
+    return this.rest.length / 3;
+  }
+
+  fill(colour: Rgb): void {
+    for (let k = 0; k < this.colours.length; k += 3) this.colours.set(colour, k);
+  }
+
+  /** @param displacement [mm] (3 n); absent: at rest */
+  move(displacement?: Float32Array): void {
+    if (displacement === undefined) this.points.set(this.rest);
+    else for (let k = 0; k < this.points.length; ++k) this.points[k] = this.rest[k] + displacement[k];
+    computeNormals(this.points, this.triangles, this.normals);
+    this.data.getPoints().modified();
+    this.normalArray.modified();
+    this.data.modified();
+  }
+
+  /** Lifts the surface off one it lies on. */
+  lift(distance: number): void {
+    for (let k = 0; k < this.points.length; ++k) this.points[k] = this.rest[k] + distance * this.normals[k];
+    this.data.getPoints().modified();
+    this.data.modified();
+  }
+
+  recolour(): void {
+    this.colourArray.modified();
+    this.data.modified();
+  }
+
+  set opacity(value: number) {
+    this.actor.getProperty().setOpacity(value);
+  }
+  set visible(value: boolean) {
+    this.actor.setVisibility(value);
+  }
+  set edges(value: boolean) {
+    this.actor.getProperty().setEdgeVisibility(value);
+    this.actor.getProperty().setEdgeColor(0.25, 0.35, 0.4);
+  }
+
+  dispose(): void {
+    this.actor.delete();
+    this.data.delete();
+  }
+}
+
+/** Each triangle behind the number of its corners, as the toolkit stores cells. */
+function listed(triangles: Uint32Array): Uint32Array {
+  const cells = new Uint32Array((triangles.length / 3) * 4);
+  for (let t = 0, k = 0; t < triangles.length; t += 3) {
+    cells[k++] = 3;
+    cells[k++] = triangles[t];
+    cells[k++] = triangles[t + 1];
+    cells[k++] = triangles[t + 2];
+  }
+  return cells;
+}

@@ -1,0 +1,53 @@
+// Where to look from, so that a surgeon sees what matters first.
+import type { Mesh } from "../api/meshes";
+import { computeNormals, type Point } from "./surface_geometry";
+import { trianglesOf } from "../api/meshes";
+
+export interface Axes {
+  left: Point;
+  up: Point;
+  forward: Point;
+}
+
+export interface View {
+  focus: Point;
+  direction: Point;
+  up: Point;
+  halfHeight: number;
+}
+
+const unit = (v: Point): Point => {
+  const length = Math.hypot(...v) || 1;
+  return v.map((x) => x / length) as Point;
+};
+
+function boxOf(points: Float32Array): { centre: Point; half: Point } {
+  const low: Point = [Infinity, Infinity, Infinity];
+  const high: Point = [-Infinity, -Infinity, -Infinity];
+  for (let k = 0; k < points.length; ++k) {
+    low[k % 3] = Math.min(low[k % 3], points[k]);
+    high[k % 3] = Math.max(high[k % 3], points[k]);
+  }
+  return { centre: low.map((v, c) => (v + high[c]) / 2) as Point, half: low.map((v, c) => (high[c] - v) / 2) as Point };
+}
+
+/** The whole face from the front, or from a side of it. */
+export function faceView(face: Mesh, axes: Axes, turn: "front" | "left" | "right"): View {
+  const { centre, half } = boxOf(face.points);
+  const sign = turn === "left" ? 1 : turn === "right" ? -1 : 0;
+  const direction = turn === "front" ? axes.forward : unit(axes.forward.map((v, c) => 0.75 * v + 0.66 * sign * axes.left[c]) as Point);
+  return { focus: centre, direction, up: axes.up, halfHeight: 1.12 * Math.max(...half) };
+}
+
+/** The region of the model, from in front of it, with what a face is recognised by around it. */
+export function regionView(skin: Mesh, axes: Axes, flat: boolean): View {
+  const { centre, half } = boxOf(skin.points);
+  if (flat) return { focus: centre, direction: unit([0.2, -0.75, 0.65]), up: [0, 0, 1], halfHeight: 1.05 * Math.max(...half) };
+  const normals = new Float32Array(skin.points.length);
+  computeNormals(skin.points, trianglesOf(skin), normals);
+  const mean: Point = [0, 0, 0];
+  for (let k = 0; k < normals.length; ++k) mean[k % 3] += normals[k];
+  const outward = unit(mean);
+  const direction = unit(outward.map((v, c) => v + 0.45 * axes.forward[c]) as Point);
+  return { focus: centre, direction, up: axes.up, halfHeight: Math.max(78, 2 * Math.max(...half)) };
+}

@@ -1,0 +1,142 @@
+// Step 3: where the fat goes, how much and how fast, and what holds the tissue together.
+import { create } from "@bufbuild/protobuf";
+import { FatPreset, FatSchema, LigamentSchema, Pace, TimeControl_Goal, TimeControlSchema } from "@wire/simulation_pb";
+import { ligamentNames, readable } from "../plan/anatomy";
+import { freeName, newFilm, newInjection } from "../plan/new_plan";
+import { editPlan, modelIsCurrent, plan, region, zones } from "../plan/state";
+import { tool } from "../plan/tools";
+import { CheckField, Complaint, NumberField, Section, SelectField } from "./fields";
+import { FilmEditor } from "./zone_list";
+
+function Planes() {
+  const films = plan.value.simulation?.films ?? [];
+  let zonesBefore = 0;
+  return (
+    <Section title="Planes and zones">
+      {films.map((film, index) => {
+        const before = zonesBefore;
+        zonesBefore += film.zones.length;
+        return <FilmEditor key={film.name} film={index} of={film} zonesBefore={before} />;
+      })}
+      <button type="button" class="link" onClick={() => editPlan(({ model, simulation }) => {
+        const used = simulation!.films.map(({ belowLayer }) => belowLayer);
+        const layer = model!.layers.find(({ name }) => !used.includes(name))?.name ?? model!.layers[0]?.name ?? "";
+        simulation!.films.push(newFilm(freeName("plane", simulation!.films.map(({ name }) => name)), layer, model!.nXi ?? 40, model!.nEta ?? 32));
+      })}>Add a plane</button>
+    </Section>
+  );
+}
+
+function Injections() {
+  const injections = plan.value.simulation?.injections ?? [];
+  const names = zones.value.map(({ zone }) => zone.name);
+  const total = injections.reduce((sum, { volumeMl }) => sum + (volumeMl ?? 0), 0);
+  return (
+    <Section title="Injections" aside={<b class="total">{total.toFixed(1)} mL</b>}>
+      {injections.map((injection, index) => {
+        const at = `simulation.injections[${index}]`;
+        const placing = tool.value.kind === "site" && tool.value.index === index;
+        return (
+          <fieldset class="injection" key={index}>
+            <legend>Injection {index + 1}</legend>
+            <SelectField label="Into" value={injection.zone} field={`${at}.zone`} options={names.map((name) => ({ value: name, label: readable(name) }))}
+              onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].zone = value))} />
+            <div class="pair">
+              <NumberField label="Volume" unit="mL" step={0.1} value={injection.volumeMl} field={`${at}.volume_ml`}
+                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].volumeMl = value))} />
+              <NumberField label="Rate" unit="mL/s" step={0.1} value={injection.rateMlPerS} field={`${at}.rate_ml_per_s`}
+                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].rateMlPerS = value))} />
+            </div>
+            <div class="row">
+              <button type="button" class="button small" aria-pressed={placing} onClick={() => (tool.value = placing ? { kind: "turn" } : { kind: "site", index })}>
+                {injection.site ? "Move the point" : "Place the point"}
+              </button>
+              {injection.site && <button type="button" class="link" onClick={() => editPlan(({ simulation }) => (simulation!.injections[index].site = undefined))}>Evenly over the zone</button>}
+              <button type="button" class="link" onClick={() => editPlan(({ simulation }) => void simulation!.injections.splice(index, 1))}>Remove</button>
+            </div>
+            <Complaint field={`${at}.site`} />
+          </fieldset>
+        );
+      })}
+      <button type="button" class="button wide" disabled={names.length === 0} onClick={() => editPlan(({ simulation }) => void simulation!.injections.push(newInjection(names[0])))}>Add an injection</button>
+      {names.length === 0 && <p class="hint">Add a zone first.</p>}
+    </Section>
+  );
+}
+
+function Fat() {
+  const fat = plan.value.simulation?.fat;
+  const preset = fat?.preset ?? FatPreset.FAT_PRESET_UNSPECIFIED;
+  return (
+    <Section title="Fat">
+      <SelectField label="Preparation" value={preset === 0 ? FatPreset.NEWTONIAN : preset} field="simulation.fat" onChange={(value) => editPlan(({ simulation }) => (simulation!.fat = create(FatSchema, { preset: Number(value) })))}
+        options={[{ value: FatPreset.NEWTONIAN, label: "Newtonian (the paper's)" }, { value: FatPreset.COLEMAN, label: "Coleman" }, { value: FatPreset.NANOFAT, label: "Nanofat" }, { value: FatPreset.SVF_GEL, label: "SVF gel" }]} />
+      {preset <= FatPreset.NEWTONIAN && (
+        <NumberField label="Viscosity" unit="Pa s" value={fat?.viscosityPaS} placeholder="15" field="simulation.fat.viscosity_pa_s"
+          onChange={(value) => editPlan(({ simulation }) => ((simulation!.fat ??= create(FatSchema)).viscosityPaS = value))} />
+      )}
+    </Section>
+  );
+}
+
+function Ligaments() {
+  const ligaments = plan.value.simulation?.ligaments ?? [];
+  const sides = ["left", "right"].filter((side) => region.value?.landmarksMm[`gonion_${side}`]);
+  const named = sides.flatMap((side) => ligamentNames.map((name) => `${name}_${side}`));
+  const add = (choice: string): void => {
+    const name = freeName(choice === "points" ? "ligament" : choice, ligaments.map((ligament) => ligament.name));
+    editPlan(({ simulation }) => void simulation!.ligaments.push(create(LigamentSchema, choice === "points"
+      ? { name, stiffnessNPerMm: 0.2, slackMm: 0.5 } : { name, place: { case: "anatomical", value: choice }, slackMm: 0.5 })));
+    if (choice === "points") tool.value = { kind: "ligament", index: plan.value.simulation!.ligaments.length - 1 };
+  };
+  return (
+    <Section title="Ligaments">
+      <ul class="items">
+        {ligaments.map((ligament, index) => {
+          const placing = tool.value.kind === "ligament" && tool.value.index === index;
+          return (
+            <li class="item" key={ligament.name}>
+              <span class="grow"><b>{readable(ligament.name)}</b> <span class="quiet">{ligament.place.case === "points" ? `${ligament.place.value.points.length} points` : ligament.place.case === "anatomical" ? "by landmarks" : "not placed"}</span></span>
+              {ligament.place.case !== "anatomical" && <button type="button" class="button small" aria-pressed={placing} onClick={() => (tool.value = placing ? { kind: "turn" } : { kind: "ligament", index })}>{placing ? "Done" : "Place"}</button>}
+              <button type="button" class="icon" aria-label={`Remove ${readable(ligament.name)}`} onClick={() => editPlan(({ simulation }) => void simulation!.ligaments.splice(index, 1))}>×</button>
+              <Complaint field={`simulation.ligaments[${index}]`} />
+            </li>
+          );
+        })}
+      </ul>
+      <SelectField label="Add a ligament" value="" onChange={(value) => value !== "" && add(value)}
+        options={[{ value: "", label: "Choose…" }, { value: "points", label: "Placed by hand" }, ...named.map((name) => ({ value: name, label: readable(name) }))]} />
+    </Section>
+  );
+}
+
+function Time() {
+  const { time, pace, preview } = plan.value.simulation ?? {};
+  const settled = time?.goal === TimeControl_Goal.SETTLED_SHAPE;
+  return (
+    <Section title="Time">
+      <CheckField label="Watch in real time" value={pace === Pace.REAL_TIME} onChange={(value) => editPlan(({ simulation }) => (simulation!.pace = value ? Pace.REAL_TIME : Pace.AS_FAST_AS_POSSIBLE))} />
+      <CheckField label="Only the settled shape" value={settled} onChange={(value) => editPlan(({ simulation }) => {
+        simulation!.time = value ? create(TimeControlSchema, { goal: TimeControl_Goal.SETTLED_SHAPE, endS: 600 }) : create(TimeControlSchema, { stepMs: 10, maxStepMs: 2000, endS: 120, settleSkinSpeedMmPerS: 0.01 });
+      })} />
+      <CheckField label="Preview first" value={preview ?? false} onChange={(value) => editPlan(({ simulation }) => (simulation!.preview = value))} />
+      <NumberField label="Ends at the latest after" unit="s" min={0} value={time?.endS} placeholder="60" field="simulation.time.end_s"
+        onChange={(value) => editPlan(({ simulation }) => ((simulation!.time ??= create(TimeControlSchema)).endS = value))} />
+      <Complaint field="simulation.time" />
+    </Section>
+  );
+}
+
+export function FatPanel() {
+  return (
+    <>
+      {!modelIsCurrent.value && <p class="hint">The model is not built yet: zones show once it is.</p>}
+      <Planes />
+      <Injections />
+      <Fat />
+      <Ligaments />
+      <Time />
+      <Complaint field="simulation.films" />
+    </>
+  );
+}

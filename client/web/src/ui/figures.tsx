@@ -1,0 +1,69 @@
+// The figures a surgeon looks for first, and how they came about.
+import { readable } from "../plan/anatomy";
+import { frame, lookAt, rows, simulation } from "../run/run";
+import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
+import { Plot } from "./plot";
+
+function Figure({ label, value, unit, note, chip }: { label: string; value: string; unit: string; note?: string; chip?: string }) {
+  return (
+    <div class="figure">
+      <span class="figure-label">{label}</span>
+      <span class="figure-value" data-figure={label}>{value}<small>{unit}</small></span>
+      {note && <span class="figure-note">{chip && <i class="swatch" style={{ background: chip }} aria-hidden="true" />}{note}</span>}
+    </div>
+  );
+}
+
+/** The row at the time that is looked at. */
+function rowNow() {
+  const at = frame.value?.timeS;
+  const all = rows.value;
+  if (at === undefined || all.length === 0) return all.at(-1);
+  let [low, high] = [0, all.length - 1];
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (all[middle].timeS <= at + 1e-9) low = middle;
+    else high = middle - 1;
+  }
+  return all[low];
+}
+
+function Zones() {
+  const zones = simulation.value?.summary?.zones ?? [];
+  if (zones.length === 0) return null;
+  return (
+    <table class="figures-table">
+      <thead><tr><th>Zone</th><th>mL</th><th>mmHg</th><th>mm</th></tr></thead>
+      <tbody>
+        {zones.map((zone) => (
+          <tr key={zone.name}><th>{readable(zone.name)}</th><td>{zone.volumeMl.toFixed(2)}</td><td>{(zone.meanPressurePa * mmHgPerPa).toFixed(1)}</td><td>{zone.maxThicknessMm.toFixed(1)}</td></tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+export function Figures() {
+  const row = rowNow();
+  const all = rows.value;
+  const times = all.map(({ timeS }) => timeS);
+  const pressure = (row?.maxPressurePa ?? 0) * mmHgPerPa;
+  const band = bandOf(pressure);
+  const pick = (timeS: number): void => lookAt(timeS);
+  return (
+    <aside class="figures" aria-label="Figures">
+      <Figure label="Injected" value={(row?.injectedMl ?? 0).toFixed(2)} unit="mL" />
+      <Figure label="Highest pressure" value={pressure.toFixed(1)} unit="mmHg" note={`${((row?.maxPressurePa ?? 0) / 1000).toFixed(2)} kPa · ${pressureBands[band].name} mmHg`} chip={cssOf(pressureBands[band].colour)} />
+      <Figure label="Skin rises" value={(row?.skinMaxDisplacementMm ?? 0).toFixed(1)} unit="mm" />
+      <Figure label="Simulated time" value={(frame.value?.timeS ?? row?.timeS ?? 0).toFixed(1)} unit="s" />
+      <Zones />
+      {all.length > 1 && (
+        <>
+          <Plot title="Volume" unit="mL" times={times} now={frame.value?.timeS} onPick={pick} lines={[{ name: "injected", colour: "#0b6e6e", values: all.map(({ injectedMl }) => injectedMl) }]} />
+          <Plot title="Highest pressure" unit="mmHg" times={times} now={frame.value?.timeS} onPick={pick} lines={[{ name: "pressure", colour: "#a8321f", values: all.map(({ maxPressurePa }) => maxPressurePa * mmHgPerPa) }]} />
+          <Plot title="Skin rises" unit="mm" times={times} now={frame.value?.timeS} onPick={pick} lines={[{ name: "skin", colour: "#34507a", values: all.map(({ skinMaxDisplacementMm }) => skinMaxDisplacementMm) }]} />
+        </>
+      )}
+    </aside>
+  );
+}

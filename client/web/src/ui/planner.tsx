@@ -1,0 +1,100 @@
+// The planner: four steps beside the picture.
+import { effect } from "@preact/signals";
+import { useEffect } from "preact/hooks";
+import { busy, modelIsCurrent, problem, scan, violations, zones } from "../plan/state";
+import { tool } from "../plan/tools";
+import { connection, hasResult, simulation } from "../run/run";
+import { FacePanel } from "./face_panel";
+import { FatPanel } from "./fat_panel";
+import { Figures } from "./figures";
+import { onKey } from "./keyboard";
+import { RunPanel } from "./run_panel";
+import { Stage } from "./stage";
+import { distance, quantity, step, type Step } from "./stage_state";
+import { Timeline } from "./timeline";
+import { TissuePanel } from "./tissue_panel";
+import { bindZonePreview } from "./zone_preview";
+
+const steps: { key: Step; label: string; done: () => boolean }[] = [
+  { key: "face", label: "Face", done: () => scan.value !== undefined },
+  { key: "tissue", label: "Tissue", done: () => modelIsCurrent.value },
+  { key: "fat", label: "Fat", done: () => zones.value.length > 0 },
+  { key: "run", label: "Run", done: () => hasResult.value },
+];
+
+function Steps() {
+  return (
+    <nav class="steps" aria-label="Steps of the plan">
+      {steps.map(({ key, label, done }, index) => (
+        <button type="button" key={key} aria-current={step.value === key ? "step" : undefined} class={done() ? "done" : ""} onClick={() => {
+          tool.value = { kind: "turn" };
+          step.value = key;
+        }}><span class="number" aria-hidden="true">{done() ? "✓" : index + 1}</span>{label}</button>
+      ))}
+    </nav>
+  );
+}
+
+function Busy() {
+  const now = busy.value;
+  if (!now) return null;
+  return (
+    <div class="busy" role="status">
+      <span>{now.label}…</span>
+      <progress value={now.share} max={1} aria-label={now.label} />
+    </div>
+  );
+}
+
+function Problem() {
+  const now = problem.value;
+  if (!now) return null;
+  return (
+    <div class="problem" role="alert">
+      <p>{now.message}</p>
+      {now.violations.length > 0 && <ul>{now.violations.map(({ field, description }) => <li key={field}><code>{field}</code> {description}</li>)}</ul>}
+      <button type="button" class="icon" aria-label="Dismiss" onClick={() => (problem.value = undefined)}>×</button>
+    </div>
+  );
+}
+
+export function Planner() {
+  useEffect(() => {
+    const ends = [
+      bindZonePreview(),
+      // Distances belong to the simulation they were measured on.
+      effect(() => {
+        if (simulation.value?.name !== undefined) return;
+        distance.value = undefined;
+        if (quantity.peek() === "distance") quantity.value = "displacement";
+      }),
+    ];
+    window.addEventListener("keydown", onKey);
+    return () => {
+      window.removeEventListener("keydown", onKey);
+      ends.forEach((end) => end());
+    };
+  }, []);
+  const now = step.value;
+  return (
+    <main class={`planner step-${now}`}>
+      <div class="panel">
+        <Steps />
+        <div class="panel-body" data-violations={violations.value.length}>
+          {now === "face" && <FacePanel />}
+          {now === "tissue" && <TissuePanel />}
+          {now === "fat" && <FatPanel />}
+          {now === "run" && <RunPanel />}
+        </div>
+      </div>
+      <div class="middle">
+        <Stage />
+        {now === "run" && <Timeline />}
+        {connection.value === "lost" && <div class="lost" role="status">Connection lost. Trying again; nothing is lost.</div>}
+        <Busy />
+        <Problem />
+      </div>
+      {now === "run" && <Figures />}
+    </main>
+  );
+}

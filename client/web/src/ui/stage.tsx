@@ -1,0 +1,86 @@
+// The picture: the face, what a click does on it, the scalar bar, the probe, before and after.
+import { effect } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { brushMm, tool, toolHint } from "../plan/tools";
+import { frame, meshes } from "../run/run";
+import { FaceScene } from "../scene/face_scene";
+import { bindFace, bindFrame, bindMarkers, bindPatch } from "./stage_bindings";
+import { useCursor } from "./stage_cursor";
+import { compare, map, probe, quantity, rate, shownScene, split } from "./stage_state";
+import { ScalarBar } from "./scalar_bar";
+import { ViewTools } from "./view_tools";
+
+/** Different frames that became pictures, each second. */
+function countPictures(scene: FaceScene, element: HTMLElement): () => void {
+  let [shown, last, total] = [0, frame.value, 0];
+  scene.viewport.onRendered = () => {
+    if (frame.value === last || frame.value === undefined) return;
+    last = frame.value;
+    shown += 1;
+    element.dataset["pictures"] = String((total += 1));
+  };
+  let since = performance.now();
+  const timer = setInterval(() => {
+    const now = performance.now();
+    rate.value = (1000 * shown) / (now - since);
+    [shown, since] = [0, now];
+  }, 1000);
+  return () => clearInterval(timer);
+}
+
+function Probe() {
+  const now = probe.value;
+  if (!now) return null;
+  return (
+    <div class="probe" style={{ left: `${now.x + 14}px`, top: `${now.y + 14}px` }}>
+      <b>{now.displacementMm.toFixed(2)} mm</b> displaced
+      {now.thicknessMm > 0.06 && <><br /><b>{now.pressureMmHg.toFixed(1)} mmHg</b> in {now.thicknessMm.toFixed(2)} mm of fat</>}
+      {now.distanceMm !== undefined && <><br /><b>{now.distanceMm.toFixed(2)} mm</b> from the target</>}
+    </div>
+  );
+}
+
+function Slider() {
+  return (
+    <input class="split" type="range" min={0} max={1} step={0.01} value={split.value} aria-label="Share of the picture before" style={{ "--split": split.value }}
+      onInput={(event) => (split.value = Number(event.currentTarget.value))} />
+  );
+}
+
+export function Stage() {
+  const main = useRef<HTMLDivElement>(null);
+  const before = useRef<HTMLDivElement>(null);
+  const whole = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const scene = new FaceScene(main.current!);
+    scene.onMap = (next) => (map.value = next);
+    shownScene.value = scene;
+    const ends = [
+      countPictures(scene, whole.current!),
+      bindFace(scene), bindPatch(scene), bindMarkers(scene), bindFrame(scene),
+      effect(() => scene.compare(compare.value === "after" ? undefined : before.current!)),
+    ];
+    return () => {
+      ends.forEach((end) => end());
+      shownScene.value = undefined;
+      scene.dispose();
+    };
+  }, []);
+  useCursor(main);
+  const mode = compare.value;
+  const hint = toolHint(tool.value);
+  const comparing = mode !== "after";
+  return (
+    <div class={`stage mode-${mode}`} ref={whole} data-tool={tool.value.kind}>
+      <div class="view before" ref={before} hidden={!comparing} aria-label="The face before, in three dimensions"
+        style={mode === "slider" ? { clipPath: `inset(0 ${100 * (1 - split.value)}% 0 0)` } : {}} />
+      <div class="view after" ref={main} tabIndex={0} role="application" aria-label="The face, in three dimensions: drag to turn, wheel to come nearer" />
+      {comparing && <><span class="tag tag-before">Before</span><span class="tag tag-after">After</span></>}
+      {mode === "slider" && <Slider />}
+      {hint && <div class="tool-hint" role="status">{hint}{tool.value.kind === "paint" && ` (${brushMm.value} mm)`}<button type="button" class="link" onClick={() => (tool.value = { kind: "turn" })}>Done</button></div>}
+      {quantity.value !== "none" && map.value && meshes.value && frame.value && <ScalarBar map={map.value} quantity={quantity.value} />}
+      <Probe />
+      <ViewTools />
+    </div>
+  );
+}

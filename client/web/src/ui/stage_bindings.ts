@@ -1,0 +1,129 @@
+// Keeps the scene as the plan and the run have it.
+import { effect, untracked } from "@preact/signals";
+import { locate, pointOf } from "../plan/landmarks";
+import { chart, model, modelMeshes, plan, region, scanMesh, zones } from "../plan/state";
+import { liveSite, tool } from "../plan/tools";
+import { faceMesh, frame, meshes } from "../run/run";
+import { zoneColours, type Rgb } from "../scene/colour_maps";
+import type { FaceScene } from "../scene/face_scene";
+import type { Ball, Line } from "../scene/markers";
+import { distanceOf, type Point } from "../scene/surface_geometry";
+import { layerShown, showLayers } from "./tissue_panel";
+import { distance, quantity, step } from "./stage_state";
+import { lookAtFace, lookAtRegion } from "./view_tools";
+import { zonePreview } from "./zone_preview";
+
+type End = () => void;
+
+/** The face is the run's where there is one, else the scan, else the skin of a plate. */
+export function bindFace(scene: FaceScene): End {
+  return effect(() => {
+    const running = meshes.value?.get(faceMesh.value);
+    const plate = plan.value.model?.geometry.case === "square" ? modelMeshes.value?.get("skin") : undefined;
+    const mesh = running ?? scanMesh.value ?? plate;
+    const first = !scene.hasFace;
+    scene.setFace(mesh);
+    if (first && mesh) untracked(() => (chart.value || running ? lookAtRegion() : lookAtFace("front")));
+  });
+}
+
+function paintedZone(vertex: number): Rgb | undefined {
+  const all = zones.value;
+  for (let k = 0; k < all.length; ++k) {
+    const { shape } = all[k].zone;
+    if (shape.case === "painted" && shape.value.values[vertex] >= 0.5) return zoneColours[k % zoneColours.length];
+  }
+  return undefined;
+}
+
+export function bindPatch(scene: FaceScene): End {
+  const patch = effect(() => {
+    const shown = step.value !== "run" && step.value !== "face";
+    scene.setPatch(shown ? modelMeshes.value?.get("skin") : undefined, () => undefined);
+    if (shown && modelMeshes.value && untracked(() => frame.value === undefined)) lookAtRegion();
+  });
+  const colours = effect(() => {
+    const placed = zonePreview.value;
+    void step.value;
+    scene.colourPatch((vertex) => {
+      const zone = placed?.[vertex] ?? 0;
+      return paintedZone(vertex) ?? (zone >= 1 ? zoneColours[(Math.round(zone) - 1) % zoneColours.length] : undefined);
+    });
+  });
+  const layers = effect(() => {
+    const tissue = showLayers.value && step.value === "tissue" ? modelMeshes.value?.get("tissue") : undefined;
+    scene.setLayers(tissue, (model.value?.spec?.layers ?? []).map(({ elementsThrough }) => elementsThrough ?? 1), layerShown.value);
+  });
+  return () => [patch, colours, layers].forEach((end) => end());
+}
+
+/** The vertex of the face nearest to a place: marks lie on the skin, not beside it. */
+function onSkin(scene: FaceScene, at: Point | undefined): Point | undefined {
+  const points = scene.points;
+  if (at === undefined || points === undefined) return at;
+  let [best, least] = [at, Infinity];
+  for (let k = 0; k < points.length; k += 3) {
+    const vertex: Point = [points[k], points[k + 1], points[k + 2]];
+    const d = distanceOf(vertex, at);
+    if (d < least) [best, least] = [vertex, d];
+  }
+  return best;
+}
+
+const colour: Record<"landmark" | "active" | "corner" | "site" | "ligament" | "wall", Rgb> = {
+  landmark: [20, 96, 110], active: [230, 120, 0], corner: [40, 70, 140], site: [190, 30, 60], ligament: [110, 60, 140], wall: [40, 40, 40],
+};
+
+export function bindMarkers(scene: FaceScene): End {
+  return effect(() => {
+    void scanMesh.value;
+    const points = region.value?.landmarksMm ?? {};
+    const place = (at: Parameters<typeof locate>[0]): Point | undefined =>
+      onSkin(scene, locate(at, points, region.value?.axes, chart.value && ((xi, eta) => chart.value!.position(xi, eta))));
+    const balls: Ball[] = [];
+    const lines: Line[] = [];
+    const add = (at: Point | undefined, kind: keyof typeof colour, radius = 1.6): void => void (at && balls.push({ at, colour: colour[kind], radius }));
+    if (step.value === "face") {
+      const active = tool.value.kind === "landmark" ? tool.value.name : "";
+      for (const [name, at] of Object.entries(points)) add(pointOf(at), name === active ? "active" : "landmark");
+    }
+    if (step.value === "face" || step.value === "tissue") {
+      const corners = (region.value?.corners ?? []).map(place).filter((at) => at !== undefined);
+      if (step.value === "tissue") corners.forEach((at) => add(at, "corner"));
+      if (corners.length === 4 && modelMeshes.value === undefined && step.value === "tissue") lines.push({ points: [...corners, corners[0]], colour: colour.corner });
+    }
+    if (step.value === "fat" || step.value === "run") {
+      const { injections = [], ligaments = [], films = [] } = plan.value.simulation ?? {};
+      for (const { site } of injections) if (site) add(place(site), "site");
+      if (liveSite.value) add(place(liveSite.value), "active");
+      if (step.value === "fat") {
+        for (const ligament of ligaments) if (ligament.place.case === "points") ligament.place.value.points.forEach((at) => add(place(at), "ligament", 1.2));
+        for (const wall of films.flatMap((film) => film.walls)) {
+          if (wall.place.case !== "path") continue;
+          const along = wall.place.value.points.map(place).filter((at) => at !== undefined);
+          along.forEach((at) => add(at, "wall", 0.9));
+          lines.push({ points: along, colour: colour.wall });
+        }
+      }
+    }
+    scene.markers.show(balls, lines);
+  });
+}
+
+/** A frame is worked on once a refresh of the screen, the newest: what came between is only kept. */
+export function bindFrame(scene: FaceScene): End {
+  let due = 0;
+  const show = (): void => {
+    due = 0;
+    scene.show(frame.value, quantity.value);
+  };
+  const end = effect(() => {
+    void [frame.value, quantity.value, meshes.value];
+    if (distance.value) scene.setDistance(distance.value.vertices, distance.value.distanceMm);
+    if (due === 0) due = requestAnimationFrame(show);
+  });
+  return () => {
+    cancelAnimationFrame(due);
+    end();
+  };
+}

@@ -1,0 +1,20 @@
+// What the picture shows, and how.
+import { signal } from "@preact/signals";
+import type { Evaluation } from "@wire/simulation_service_pb";
+import type { ColourMap, Quantity } from "../scene/colour_maps";
+import type { FaceScene, Probe } from "../scene/face_scene";
+
+export type Compare = "after" | "side" | "slider";
+export type Step = "face" | "tissue" | "fat" | "run";
+
+export const step = signal<Step>("face");
+export const quantity = signal<Quantity | "none">("displacement");
+export const compare = signal<Compare>("after");
+/** share of the picture that shows the face before */
+export const split = signal(0.5);
+export const map = signal<ColourMap | undefined>(undefined);
+export const probe = signal<(Probe & { x: number; y: number }) | undefined>(undefined);
+export const distance = signal<Evaluation | undefined>(undefined);
+export const shownScene = signal<FaceScene | undefined>(undefined);
+/** pictures of different frames, in the last second and in all */
+export const rate = signal(0);

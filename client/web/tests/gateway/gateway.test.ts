@@ -1,0 +1,147 @@
+// The gateway between a client on gRPC-Web and the real daemon.
+import { create, type DescMethodUnary } from "@bufbuild/protobuf";
+import { Code, ConnectError, createClient } from "@connectrpc/connect";
+import { createGrpcWebTransport } from "@connectrpc/connect-node";
+import { createHash } from "node:crypto";
+import { readFileSync } from "node:fs";
+import { request, type IncomingMessage } from "node:http";
+import { afterAll, beforeAll, describe, expect, it } from "vitest";
+import { BadRequestSchema } from "@google/rpc/error_details_pb";
+import { FrameService, WatchRequestSchema } from "@wire/frame_service_pb";
+import { OperationService } from "@wire/operation_service_pb";
+import { PatientService, ScanFormat, UploadScanRequestSchema, type ScanSchema } from "@wire/patient_service_pb";
+import { ModelSpecSchema } from "@wire/model_pb";
+import { SimulationSpecSchema } from "@wire/simulation_pb";
+import { SimulationService } from "@wire/simulation_service_pb";
+import { toBinary } from "@bufbuild/protobuf";
+import { System } from "../system/system";
+
+const system = new System();
+let transport: ReturnType<typeof createGrpcWebTransport>;
+let patients: ReturnType<typeof createClient<typeof PatientService>>;
+let simulations: ReturnType<typeof createClient<typeof SimulationService>>;
+
+beforeAll(async () => {
+  await system.startDaemon();
+  await system.startGateway();
+  transport = createGrpcWebTransport({ baseUrl: system.address, httpVersion: "1.1" });
+  patients = createClient(PatientService, transport);
+  simulations = createClient(SimulationService, transport);
+});
+afterAll(() => system.stop());
+
+const square = create(ModelSpecSchema, {
+  geometry: { case: "square", value: { lengthXiMm: 40, lengthEtaMm: 40 } }, nXi: 24, nEta: 24,
+  layers: [{ name: "skin", thicknessMm: { kind: { case: "constant", value: 2 } }, youngsModulusKpa: 100, poissonRatio: 0.45, densityKgM3: 1100 }],
+  rim: { kind: 1 }, base: { kind: 1 },
+});
+const film = {
+  name: "film", belowLayer: "skin", nXi: 12, nEta: 12,
+  zones: [{ name: "all", shape: { case: "box" as const, value: { xiMin: 0, xiMax: 1, etaMin: 0, etaMax: 1 } } }],
+};
+
+/** A simulation that goes on until it is stopped. */
+async function startEndless(): Promise<string> {
+  const { name: parent } = await patients.createPatient({ requestId: `p${Date.now()}` });
+  let operation = await patients.buildModel({ parent, spec: square });
+  const operations = createClient(OperationService, transport);
+  while (!operation.done) operation = await operations.waitOperation({ name: operation.name });
+  const { models } = await patients.listModels({ parent });
+  const spec = create(SimulationSpecSchema, {
+    model: models[0].name, films: [film], injections: [{ zone: "all", volumeMl: 0.4, rateMlPerS: 0.1 }],
+    time: { stepMs: 10, endS: 100_000, settleSkinSpeedMmPerS: 0 },
+  });
+  return (await simulations.createSimulation({ spec, start: true })).name;
+}
+
+function fetchText(path: string, headers: Record<string, string> = {}): Promise<{ status: number; text: string; headers: IncomingMessage["headers"] }> {
+  return new Promise((resolve, reject) => {
+    const sent = request(new URL(path, system.address), { headers }, (response) => {
+      let text = "";
+      response.on("data", (chunk: Buffer) => (text += chunk.toString())).on("end", () => resolve({ status: response.statusCode!, text, headers: response.headers }));
+    });
+    sent.on("error", reject).end();
+  });
+}
+
+describe("the gateway", () => {
+  it("serves the page and the samples, and nothing beside them", async () => {
+    const page = await fetchText("/");
+    expect(page.text).toContain('<div id="page">');
+    expect(page.headers["content-security-policy"]).toContain("default-src 'self'");
+    expect((await fetchText("/samples/plans/jaw_angle.json")).text).toContain('"jaw_angle"');
+    expect((await fetchText("/samples/../../CHANGELOG.md")).status).toBe(404);
+    expect((await fetchText("/nothing")).status).toBe(404);
+  });
+  it("answers to names of this machine only", async () => {
+    expect((await fetchText("/", { host: "clinic.example:80" })).status).toBe(421);
+  });
+  it("passes violations on as the daemon gives them", async () => {
+    const error = await patients.createPatient({ patientId: "Not An Id" }).then(() => undefined, (cause) => ConnectError.from(cause));
+    expect(error?.code).toBe(Code.InvalidArgument);
+    expect(error?.findDetails(BadRequestSchema)[0].fieldViolations[0].field).toBe("patient_id");
+  });
+  it("passes request ids there and back", async () => {
+    let answered = "";
+    await patients.listPatients({}, { headers: { "x-request-id": "seen-17" }, onHeader: (headers) => (answered = headers.get("x-request-id") ?? "") });
+    expect(answered).toBe("seen-17");
+  });
+  it("takes a scan a chunk a call, as a browser sends it", async () => {
+    const { name: parent } = await patients.createPatient({ requestId: "for-a-scan" });
+    const bytes = readFileSync(new URL("../../../examples/faces/half_face.obj", import.meta.url));
+    const sha256 = createHash("sha256").update(bytes).digest("hex");
+    const scan = await patients.createScan({ parent, format: ScanFormat.OBJ, sizeBytes: BigInt(bytes.length), sha256 });
+    const asUnary = { ...PatientService.method.uploadScan, methodKind: "unary" } as unknown as DescMethodUnary<typeof UploadScanRequestSchema, typeof ScanSchema>;
+    const half = bytes.length >> 1;
+    const send = (offset: number, data: Uint8Array) => transport.unary(asUnary, undefined, undefined, undefined, create(UploadScanRequestSchema, { name: scan.name, offset: BigInt(offset), data }));
+    expect((await send(0, bytes.subarray(0, half))).message.receivedBytes).toBe(BigInt(half));
+    expect((await send(half, bytes.subarray(half))).message.complete).toBe(true);
+    let points = 0n;
+    for await (const slice of patients.downloadScanMesh({ name: scan.name })) for (const { name, shape } of slice.arrays) if (name === "scan.points") points = shape[0];
+    expect(points).toBe(9991n);
+  });
+});
+
+function residentKb(pid: number): number {
+  return Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))![1]);
+}
+
+/** Asks for every frame's everything and never reads the answer. */
+function stall(simulation: string): ReturnType<typeof request> {
+  const message = toBinary(WatchRequestSchema, create(WatchRequestSchema, { simulation, meshes: ["skin", "film/film", "tissue"], maxRateHz: 1000 }));
+  const body = Buffer.concat([Buffer.from([0, 0, 0, 0, message.length]), message]);
+  const sent = request(new URL("lipofill.v1.FrameService/Watch", system.address), { method: "POST", headers: { "content-type": "application/grpc-web+proto", "content-length": body.length } }, (response) => response.pause());
+  sent.on("error", () => undefined).end(body);
+  return sent;
+}
+
+describe("a slow browser", () => {
+  it("costs its own stream, and no memory that grows", async () => {
+    const simulation = await startEndless();
+    const stalled = Array.from({ length: 12 }, () => stall(simulation));
+    await new Promise((resolve) => setTimeout(resolve, 3000));
+    const settled = residentKb(system.gateway!.pid!);
+    const before = (await simulations.getSimulation({ name: simulation })).summary!.steps;
+    await new Promise((resolve) => setTimeout(resolve, 4000));
+    const after = (await simulations.getSimulation({ name: simulation })).summary!.steps;
+    expect(after - before, "the solver goes on").toBeGreaterThan(50n);
+    expect(residentKb(system.gateway!.pid!) - settled, "kB").toBeLessThan(20_000);
+    let frames = 0;
+    for await (const { message } of createClient(FrameService, transport).watch({ simulation })) if (message.case === "frame" && message.value.last && ++frames === 5) break;
+    expect(frames, "others are served").toBe(5);
+    stalled.forEach((sent) => sent.destroy());
+    await simulations.stopSimulation({ name: simulation });
+  });
+});
+
+describe("the daemon's end", () => {
+  it("is told in words, and the gateway finds the next one", async () => {
+    const { name } = await patients.createPatient({ patientId: "lasting" });
+    await system.killDaemon();
+    const error = await patients.getPatient({ name }).then(() => undefined, (cause) => ConnectError.from(cause));
+    expect(error?.code).toBe(Code.Unavailable);
+    expect(error?.rawMessage).toMatch(/daemon cannot be reached/);
+    await system.startDaemon();
+    expect((await patients.getPatient({ name })).name).toBe(name);
+  });
+});

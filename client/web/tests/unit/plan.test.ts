@@ -1,0 +1,94 @@
+import { readFileSync, readdirSync } from "node:fs";
+import { describe, expect, it } from "vitest";
+import { ScanUnit } from "@wire/plan_pb";
+import { cornersOf } from "../../src/plan/anatomy";
+import { Chart } from "../../src/plan/chart";
+import { locate, parseLandmarks, pointOf, writeLandmarks } from "../../src/plan/landmarks";
+import { freeName, newPlan, setResolution } from "../../src/plan/new_plan";
+import { parsePlan, writePlan } from "../../src/plan/plan_file";
+import { descriptionFor, toPlanFields } from "../../src/plan/violations";
+
+const examples = new URL("../../../examples/", import.meta.url);
+const landmarkText = readFileSync(new URL("faces/half_face.landmarks.json", examples), "utf8");
+
+describe("a plan file", () => {
+  for (const file of readdirSync(new URL("plans/", examples)).filter((name) => name.endsWith(".json") && !name.includes("landmarks"))) {
+    it(`${file} is read, and written as it was`, () => {
+      const plan = parsePlan(readFileSync(new URL(`plans/${file}`, examples), "utf8"));
+      const again = parsePlan(writePlan(plan, "face.obj", ScanUnit.MILLIMETRE));
+      expect(again.model?.layers).toEqual(plan.model?.layers);
+      expect(again.simulation).toEqual(plan.simulation);
+    });
+  }
+  it("names what it does not know", () => {
+    expect(() => parsePlan('{"name": "x", "volume": 3}')).toThrow(/volume/);
+  });
+  it("has no names of this daemon's things", () => {
+    const plan = newPlan();
+    plan.simulation!.model = "patients/a/models/b";
+    if (plan.model?.geometry.case === "scanRegion") plan.model.geometry.value.scan = "patients/a/scans/c";
+    expect(writePlan(plan, "face.obj", ScanUnit.MILLIMETRE)).not.toMatch(/patients/);
+  });
+});
+
+describe("landmarks", () => {
+  it("are read in the unit of the scan and written in millimetres", () => {
+    const { points, axes } = parseLandmarks(landmarkText, ScanUnit.CENTIMETRE);
+    expect(points["nasion"].y).toBeCloseTo(854.14, 3);
+    const again = parseLandmarks(writeLandmarks(points, axes), ScanUnit.MILLIMETRE);
+    expect(again.points).toEqual(points);
+    expect(again.axes).toEqual(axes);
+  });
+  it("are refused when they are no points", () => {
+    expect(() => parseLandmarks('{"landmarks": {"nasion": [1, "2", 3]}}', ScanUnit.MILLIMETRE)).toThrow(/landmarks.nasion/);
+    expect(() => parseLandmarks("{}", ScanUnit.MILLIMETRE)).toThrow(/no object/);
+  });
+  it("place a corner by weights and offsets along the head", () => {
+    const { points, axes } = parseLandmarks(landmarkText, ScanUnit.MILLIMETRE);
+    const at = locate(cornersOf("jaw", "left")[1], points, axes)!;
+    const gonion = pointOf(points["gonion_left"]);
+    expect(at[0]).toBeCloseTo(gonion[0] - 2);
+    expect(at[1]).toBeCloseTo(gonion[1] - 17);
+    expect(at[2]).toBeCloseTo(gonion[2] - 12);
+  });
+  it("give no place while one is missing", () => {
+    expect(locate(cornersOf("jaw", "right")[0], {}, undefined)).toBeUndefined();
+  });
+});
+
+describe("the chart", () => {
+  const points = Float32Array.from([...Array(12).keys()].flatMap((k) => [k % 4, Math.floor(k / 4), 0]));
+  const chart = new Chart({ name: "skin", points, corners: 4, cells: Uint32Array.from([0, 1, 5, 4, 1, 2, 6, 5]) });
+  it("knows its rows", () => {
+    expect([chart.nXi, chart.nEta]).toEqual([3, 2]);
+    expect(chart.position(0.5, 0.25)).toEqual([1.5, 0.5, 0]);
+  });
+  it("is painted within the brush and nowhere else", () => {
+    const samples = chart.empty();
+    expect(chart.brush(samples, [1, 1, 0], 1, 1)).toBe(true);
+    expect(samples.values.filter((v) => v === 1)).toHaveLength(5);
+    expect(chart.brush(samples, [1, 1, 0], 1, 1)).toBe(false);
+    chart.brush(samples, [1, 1, 0], 5, 0);
+    expect(samples.values.every((v) => v === 0)).toBe(true);
+  });
+});
+
+describe("a new plan", () => {
+  it("keeps film cells two hexahedra wide", () => {
+    const plan = newPlan();
+    setResolution(plan, 41, 31);
+    expect([plan.simulation!.films[0].nXi, plan.simulation!.films[0].nEta]).toEqual([20, 15]);
+  });
+  it("finds free names", () => {
+    expect(freeName("deep", ["deep", "deep_2"])).toBe("deep_3");
+  });
+});
+
+describe("violations", () => {
+  it("are shown beside the field they are about", () => {
+    const all = toPlanFields([{ field: "spec.films[0].zones[1].disc.radius_mm", description: "is 0 mm" }, { field: "spec.model", description: "is missing" }], "simulation");
+    expect(descriptionFor("simulation.films[0].zones[1]", all)).toBe("disc.radius_mm is 0 mm");
+    expect(descriptionFor("simulation.films[0].zones[1].disc.radius_mm", all)).toBe("is 0 mm");
+    expect(descriptionFor("simulation.films[0].zones[10]", all)).toBe("");
+  });
+});

@@ -4,7 +4,7 @@ import { useEffect } from "preact/hooks";
 import { Simulation_State, type Simulation } from "@wire/simulation_pb";
 import { simulations } from "../api/client";
 import { toProblem } from "../api/errors";
-import { stateWord } from "../run/exports";
+import { stateClass, stateWord } from "../run/exports";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { Thumbnails } from "./thumbnails";
 
@@ -21,15 +21,18 @@ const lookEveryMs = 1000;
 /** Of what ended, only so many of the newest. */
 const mostEnded = 24;
 
-const order: Simulation_State[] = [Simulation_State.FAILED, Simulation_State.RUNNING, Simulation_State.PAUSED, Simulation_State.READY, Simulation_State.SETTLED, Simulation_State.FINISHED, Simulation_State.STOPPED];
+const order: Simulation_State[] = [Simulation_State.FAILED, Simulation_State.RUNNING, Simulation_State.QUEUED, Simulation_State.PAUSED, Simulation_State.READY, Simulation_State.SETTLED, Simulation_State.FINISHED, Simulation_State.STOPPED];
 const rank = ({ state }: Simulation): number => order.indexOf(state);
 const age = ({ createTime }: Simulation): number => -Number(createTime?.seconds ?? 0n);
-const isLive = ({ state }: Simulation): boolean => state === Simulation_State.RUNNING || state === Simulation_State.PAUSED || state === Simulation_State.READY;
+const live = [Simulation_State.RUNNING, Simulation_State.QUEUED, Simulation_State.PAUSED, Simulation_State.READY];
+const isLive = ({ state }: Simulation): boolean => live.includes(state);
+/** What cards show: plans with painted zones are long. */
+const readMask = { paths: ["name", "display_name", "state", "reason", "summary", "viewers", "create_time", "queue_position", "parked", "spec.injections"] };
 
 async function listAll(signal: AbortSignal): Promise<Simulation[]> {
   const all: Simulation[] = [];
   for (let pageToken = ""; ; ) {
-    const page = await simulations.listSimulations({ pageSize: 1000, pageToken }, { signal });
+    const page = await simulations.listSimulations({ pageSize: 1000, pageToken, readMask }, { signal });
     all.push(...page.simulations);
     if (page.nextPageToken === "") return all;
     pageToken = page.nextPageToken;
@@ -65,8 +68,8 @@ function Entry({ card: { simulation, stepsPerS } }: { card: Card }) {
   const word = stateWord(simulation);
   const wanted = (simulation.spec?.injections ?? []).reduce((sum, { volumeMl }) => sum + (volumeMl ?? 0), 0);
   return (
-    <article class={`card state-${word.toLowerCase()}`} aria-label={simulation.displayName || simulation.name}>
-      <header><h2>{simulation.displayName || simulation.name.split("/")[1]}</h2><span class="state">{word}</span></header>
+    <article class={`card ${stateClass(simulation)}`} aria-label={simulation.displayName || simulation.name}>
+      <header><h2>{simulation.displayName || simulation.name.split("/")[1]}</h2><span class="state">{word}{simulation.parked && ", parked"}</span></header>
       <div class="card-body">
         <div class="thumb">{pictures.value.get(simulation.name) ? <img src={pictures.value.get(simulation.name)} alt="The face as it is now" /> : <span class="quiet">no picture yet</span>}</div>
         <dl>
@@ -87,7 +90,7 @@ function Totals() {
   const count = (state: Simulation_State): number => cards.value.filter(({ simulation }) => simulation.state === state).length;
   return (
     <div class="totals" role="status">
-      <span><b>{count(Simulation_State.RUNNING)}</b> running</span><span><b>{count(Simulation_State.PAUSED)}</b> paused</span>
+      <span><b>{count(Simulation_State.RUNNING)}</b> running</span><span><b>{count(Simulation_State.QUEUED)}</b> queued</span><span><b>{count(Simulation_State.PAUSED)}</b> paused</span>
       <span class={count(Simulation_State.FAILED) > 0 ? "alarm" : ""}><b>{count(Simulation_State.FAILED)}</b> failed</span><span><b>{cards.value.length}</b> shown</span>
       {trouble.value && <span class="alarm">{trouble.value} Trying again.</span>}
     </div>

@@ -53,7 +53,8 @@ export class Thumbnails {
   private choose(): Simulation | undefined {
     for (let k = 0; k < this.wanted.length; ++k) {
       const one = this.wanted[(this.next + k) % this.wanted.length];
-      if (one.state === Simulation_State.FAILED || this.shown.get(one.name) === (one.summary?.steps ?? 0n)) continue;
+      // To look at one that is parked would wake it.
+      if (one.state === Simulation_State.FAILED || one.parked || this.shown.get(one.name) === (one.summary?.steps ?? 0n)) continue;
       this.next = (this.next + k + 1) % this.wanted.length;
       return one;
     }

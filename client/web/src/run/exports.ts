@@ -29,10 +29,15 @@ export function surfaceObj(points: Float32Array, cells: Uint32Array, corners: nu
   return `${lines.join("\n")}\n`;
 }
 
+/** "Running", "Queued (2)". */
 export function stateWord(simulation: Simulation | undefined): string {
-  const words: Record<Simulation_State, string> = {
-    [Simulation_State.STATE_UNSPECIFIED]: "", [Simulation_State.READY]: "Ready", [Simulation_State.RUNNING]: "Running", [Simulation_State.PAUSED]: "Paused",
-    [Simulation_State.SETTLED]: "Settled", [Simulation_State.FINISHED]: "Finished", [Simulation_State.STOPPED]: "Stopped", [Simulation_State.FAILED]: "Failed",
-  };
-  return words[simulation?.state ?? Simulation_State.STATE_UNSPECIFIED];
+  if (!simulation || simulation.state === Simulation_State.STATE_UNSPECIFIED) return "";
+  const name = Simulation_State[simulation.state] ?? "Unknown";
+  const word = name.charAt(0) + name.slice(1).toLowerCase();
+  return simulation.state === Simulation_State.QUEUED && simulation.queuePosition > 0 ? `${word} (${simulation.queuePosition})` : word;
+}
+
+/** Of a state, for the style sheet. */
+export function stateClass(simulation: Simulation | undefined): string {
+  return `state-${stateWord(simulation).split(" ")[0].toLowerCase() || "none"}`;
 }

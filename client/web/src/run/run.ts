@@ -26,7 +26,10 @@ export const faceMesh = signal("scan");
 export const recorded = signal("");
 
 export const state = computed(() => simulation.value?.state ?? Simulation_State.STATE_UNSPECIFIED);
-export const isUnderWay = computed(() => [Simulation_State.READY, Simulation_State.RUNNING, Simulation_State.PAUSED].includes(state.value));
+const underWay = [Simulation_State.READY, Simulation_State.QUEUED, Simulation_State.RUNNING, Simulation_State.PAUSED];
+export const isUnderWay = computed(() => underWay.includes(state.value));
+/** It takes the commands of one that runs. */
+export const isRunning = computed(() => state.value === Simulation_State.RUNNING || state.value === Simulation_State.QUEUED);
 export const hasResult = computed(() => frame.value !== undefined && (recorded.value !== "" || (simulation.value?.summary?.steps ?? 0n) > 0n));
 
 let leave = new AbortController();
@@ -150,7 +153,7 @@ export async function inject(injection: Injection): Promise<boolean> {
 
 /** Runs the plan, or goes on with what is under way. */
 export async function runOrPause(): Promise<void> {
-  if (state.value === Simulation_State.RUNNING) return command("pauseSimulation");
+  if (isRunning.value) return command("pauseSimulation");
   if (state.value === Simulation_State.PAUSED) return command("resumeSimulation");
   if (modelIsCurrent.value) await create(true);
 }

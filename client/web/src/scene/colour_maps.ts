@@ -8,7 +8,8 @@ export interface ColourMap {
   high: number;
 }
 
-const cividisLike: Rgb[] = [[20, 42, 92], [52, 72, 108], [92, 102, 112], [126, 124, 120], [164, 154, 112], [206, 187, 92], [250, 227, 70]];
+// From what hardly differs from skin to a blue that no skin has; lightness falls all along.
+const tide: Rgb[] = [[238, 236, 222], [196, 224, 208], [128, 196, 202], [66, 150, 192], [36, 98, 164], [24, 44, 106]];
 const fire: Rgb[] = [[238, 232, 222], [250, 205, 134], [240, 150, 80], [205, 92, 78], [148, 50, 92], [84, 26, 84]];
 const diverging: Rgb[] = [[33, 82, 158], [104, 158, 206], [198, 220, 235], [246, 244, 240], [250, 214, 176], [224, 132, 74], [158, 54, 32]];
 
@@ -79,7 +80,7 @@ export function mapFor(quantity: Quantity, largest: number): ColourMap {
     case "thickness":
       return { table: interpolate(fire), low: 0, high };
     default:
-      return { table: interpolate(cividisLike), low: 0, high };
+      return { table: interpolate(tide), low: 0, high };
   }
 }
 

@@ -49,5 +49,5 @@ export function regionView(skin: Mesh, axes: Axes, flat: boolean): View {
   for (let k = 0; k < normals.length; ++k) mean[k % 3] += normals[k];
   const outward = unit(mean);
   const direction = unit(outward.map((v, c) => v + 0.45 * axes.forward[c]) as Point);
-  return { focus: centre, direction, up: axes.up, halfHeight: Math.max(78, 2 * Math.max(...half)) };
+  return { focus: centre, direction, up: axes.up, halfHeight: Math.max(88, 2.1 * Math.max(...half)) };
 }

@@ -10,9 +10,9 @@ import { build } from "../plan/actions";
 import { writePlan } from "../plan/plan_file";
 import { attempt, busy, plan, scan, scanFile, tell } from "../plan/state";
 import { liveSite, tool } from "../plan/tools";
-import { save, seriesCsv, stateWord, surfaceObj } from "../run/exports";
+import { save, seriesCsv, stateClass, stateWord, surfaceObj } from "../run/exports";
 import { openFolder } from "../run/recorded";
-import { close, command, create as createSimulation, hasResult, inject, isUnderWay, open, recorded, rows, simulation, state } from "../run/run";
+import { close, command, create as createSimulation, hasResult, inject, isRunning, isUnderWay, open, recorded, rows, simulation, state } from "../run/run";
 import { FileButton, NumberField, Section, SelectField } from "./fields";
 import { distance, quantity, shownScene } from "./stage_state";
 
@@ -26,13 +26,13 @@ function Controls() {
   const now = state.value;
   const ready = !isUnderWay.value;
   return (
-    <Section title="Simulation" aside={<span class={`state state-${stateWord(simulation.value).toLowerCase()}`}>{recorded.value ? "Recorded" : stateWord(simulation.value)}</span>}>
+    <Section title="Simulation" aside={<span class={`state ${stateClass(simulation.value)}`}>{recorded.value ? "Recorded" : stateWord(simulation.value)}</span>}>
       <div class="row">
         {ready && <button type="button" class="button primary grow" disabled={busy.value !== undefined} onClick={() => void run()}>▶ Run</button>}
         {now === Simulation_State.READY && <button type="button" class="button primary grow" onClick={() => void command("startSimulation")}>▶ Start</button>}
-        {now === Simulation_State.RUNNING && <button type="button" class="button primary grow" onClick={() => void command("pauseSimulation")}>❚❚ Pause</button>}
+        {isRunning.value && <button type="button" class="button primary grow" onClick={() => void command("pauseSimulation")}>❚❚ Pause</button>}
         {now === Simulation_State.PAUSED && <button type="button" class="button primary grow" onClick={() => void command("resumeSimulation")}>▶ Resume</button>}
-        {(now === Simulation_State.RUNNING || now === Simulation_State.PAUSED) && <button type="button" class="button" onClick={() => void command("stopSimulation")}>■ Stop</button>}
+        {(isRunning.value || now === Simulation_State.PAUSED) && <button type="button" class="button" onClick={() => void command("stopSimulation")}>■ Stop</button>}
         {(now !== Simulation_State.STATE_UNSPECIFIED || recorded.value) && ready && <button type="button" class="button" onClick={close}>Close</button>}
       </div>
       {simulation.value?.reason && <p class={now === Simulation_State.FAILED ? "complaint" : "quiet"}>{simulation.value.reason}</p>}

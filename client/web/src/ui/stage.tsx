@@ -42,8 +42,11 @@ function Probe() {
 
 function Slider() {
   return (
-    <input class="split" type="range" min={0} max={1} step={0.01} value={split.value} aria-label="Share of the picture before" style={{ "--split": split.value }}
-      onInput={(event) => (split.value = Number(event.currentTarget.value))} />
+    <>
+      <div class="divider" style={{ left: `${100 * split.value}%` }} />
+      <input class="split" type="range" min={0} max={1} step={0.01} value={split.value} aria-label="Share of the picture before"
+        onInput={(event) => (split.value = Number(event.currentTarget.value))} />
+    </>
   );
 }
 

@@ -54,7 +54,7 @@ function Layers() {
         onChange={(value) => editPlan(({ model: spec }) => (spec!.tissuePreset = Number(value)))} />
       {layers.map((layer, index) => (
         <fieldset class="layer" key={index}>
-          <legend><i class={`swatch layer-${index}`} aria-hidden="true" />{layer.name || readable(kinds.find(({ value }) => value === layer.kind)?.label ?? "layer")}</legend>
+          <legend><i class={`swatch layer-${index}`} aria-hidden="true" />{readable(layer.name || (kinds.find(({ value }) => value === layer.kind)?.label ?? "layer"))}</legend>
           {layer.thicknessMm?.kind.case !== "samples" && (
             <NumberField label="Thickness" unit="mm" step={0.1} min={0.1} placeholder="preset" field={`model.layers[${index}].thickness_mm`}
               value={layer.thicknessMm?.kind.case === "constant" ? layer.thicknessMm.kind.value : undefined}

@@ -52,6 +52,13 @@ BackendOptions backend_options(const Options& options) {
   return backend;
 }
 
+/// nullptr where none is asked for.
+absl::StatusOr<std::unique_ptr<AuditLog>> open_audit_log(const Options& options) {
+  const std::string path = options.security.audit_file_in(options.data);
+  if (path.empty()) return nullptr;
+  return AuditLog::open(path, options.security.audit_rotate_mb * 1'000'000);
+}
+
 absl::StatusOr<std::unique_ptr<MetricsServer>> serve_metrics(const Options& options, Backend& backend) {
   if (options.metrics_listen.empty()) return nullptr;
   add_process_metrics(backend.metrics);
@@ -91,10 +98,15 @@ absl::Status serve(const Options& options) {
   if (!checkpoints.ok()) return checkpoints.status();
   sweep_files(**store, *files, *checkpoints);
 
+  const auto authenticator = Authenticator::open(options.security);
+  if (!authenticator.ok()) return authenticator.status();
+  const auto audit = open_audit_log(options);
+  if (!audit.ok()) return audit.status();
   Metrics metrics;
   Backend backend(backend_options(options), **store, *files, *checkpoints, metrics);
   if (auto back = bring_back_simulations(backend); !back.ok()) return back;
-  const auto server = GrpcServer::start(options.listen, backend);
+  const auto server =
+      GrpcServer::start(options.listen, {options.security, **authenticator, audit->get(), options.reflection}, backend);
   if (!server.ok()) return server.status();
   const auto metrics_server = serve_metrics(options, backend);
   const absl::Status served =

@@ -60,6 +60,8 @@ Metrics::Metrics()
       calls_started_(counters(registry_, "lipofill_rpc_started_total", "Calls that began, by method")),
       calls_in_flight_(gauges(registry_, "lipofill_rpc_in_flight", "Calls under way, by method")),
       calls_handled_(counters(registry_, "lipofill_rpc_handled_total", "Calls that ended, by method and status code")),
+      calls_refused_(counters(registry_, "lipofill_rpc_refused_total",
+                              "Calls that were refused for who made them or what they may do, by reason")),
       sent_bytes_(counters(registry_, "lipofill_rpc_sent_bytes_total", "Bytes of messages sent, by method")),
       call_seconds_(histograms(registry_, "lipofill_rpc_seconds", "Time a call took by the clock, by method")) {
   auto& phases = histograms(registry_, "lipofill_step_cpu_seconds", "CPU time of a step, by phase");
@@ -115,6 +117,10 @@ MethodMetrics Metrics::of_method(const std::string& method) {
 
 void Metrics::count_handled(const std::string& method, const std::string& code) {
   calls_handled_.Add({{"method", method}, {"code", code}}).Increment();
+}
+
+void Metrics::count_refused(const std::string& reason) {
+  calls_refused_.Add({{"reason", reason}}).Increment();
 }
 
 Gauge& Metrics::add_gauge(const std::string& name, const std::string& help, const prometheus::Labels& labels) {

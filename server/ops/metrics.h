@@ -65,6 +65,8 @@ class Metrics {
   // Calls. Methods are those of registered services, so that there is a bounded number of them.
   MethodMetrics of_method(const std::string& method);
   void count_handled(const std::string& method, const std::string& code);
+  /// Of callers who may not, by one of a bounded number of reasons.
+  void count_refused(const std::string& reason);
 
   /// A figure that is looked up at each scrape, by `refresh`.
   prometheus::Gauge& add_gauge(const std::string& name, const std::string& help, const prometheus::Labels& labels = {});
@@ -99,6 +101,7 @@ class Metrics {
   prometheus::Family<prometheus::Counter>& calls_started_;
   prometheus::Family<prometheus::Gauge>& calls_in_flight_;
   prometheus::Family<prometheus::Counter>& calls_handled_;
+  prometheus::Family<prometheus::Counter>& calls_refused_;
   prometheus::Family<prometheus::Counter>& sent_bytes_;
   prometheus::Family<prometheus::Histogram>& call_seconds_;
 

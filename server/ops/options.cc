@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/ops/listen_address.h"
+#include "server/ops/security_options.h"
 
 namespace lipofill::server {
 namespace {
@@ -36,6 +37,7 @@ struct CommandLine {
   GivenValues given;
   std::string config;
   bool check = false;
+  std::vector<std::string> audit_files;  ///< to be verified
 };
 
 std::string configuration_file(const CLI::Option& option) {
@@ -64,6 +66,10 @@ std::optional<CommandLine> read_command_line(int argc, char** argv, const std::v
   const CLI::Option* config =
       app.add_option("--config")->description("File of settings, TOML; see deploy/lipofilld.toml")->type_name("PATH");
   app.add_flag("--check", line.check, "Read all settings, say what they are or what is wrong with them, and end");
+  app.add_option("--verify-audit", line.audit_files,
+                 "Look through files of an audit log, given in their order, for lines changed, taken out or put in")
+      ->type_name("FILE")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   std::vector<CLI::Option*> options;
   for (const Setting& setting : settings) options.push_back(add_setting(app, setting));
   try {
@@ -110,14 +116,16 @@ void print_settings(const std::vector<Setting>& settings, const GivenValues& giv
 }
 
 void check_listen(const Options& options, FieldViolations& violations) {
+  const bool is_guarded = options.security.has_tls() && options.security.has_authentication();
   for (const std::string& text : options.listen) {
     const auto address = parse_listen_address(text);
     if (!address.ok()) {
       violations.add("listen", absl::StrCat("is \"", text, "\": ", std::string(address.status().message())));
-    } else if (!address->is_local() && !options.insecure_listen_anywhere) {
+    } else if (!address->is_local() && !is_guarded && !options.insecure_listen_anywhere) {
       violations.add("listen", absl::StrCat("is \"", text,
-                                            "\", which others on the network reach: without encryption "
-                                            "it must be a loopback address or a UNIX socket, or be told "
+                                            "\", which others on the network reach: it needs tls-certificate-file, and "
+                                            "token-keys-file or client-certificates-file to know who calls; else it "
+                                            "must be a loopback address or a UNIX socket, or be told "
                                             "insecure-listen-anywhere"));
     }
   }
@@ -128,7 +136,7 @@ void check_listen(const Options& options, FieldViolations& violations) {
 Options::Options() : workers(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u))) {}
 
 std::vector<Setting> settings_of(Options& options) {
-  return {
+  std::vector<Setting> settings = {
       {"listen", "ADDRESS", "HOST:PORT (port 0 takes a free one) or unix:PATH to serve; can be given several times",
        &options.listen},
       {"insecure-listen-anywhere", "", "Serve without encryption on addresses that others on the network reach",
@@ -165,7 +173,12 @@ std::vector<Setting> settings_of(Options& options) {
        .help = "text, or json: one object a line",
        .target = &options.log_format,
        .choices = {"text", "json"}},
+      {"reflection", "", "Tell clients what methods there are; false: only those who have the schema know",
+       &options.reflection},
   };
+  const std::vector<Setting> security = settings_of(options.security);
+  settings.insert(settings.end(), security.begin(), security.end());
+  return settings;
 }
 
 absl::Status check_options(const Options& options) {
@@ -182,6 +195,7 @@ absl::Status check_options(const Options& options) {
       violations.add("metrics-listen", absl::StrCat("is \"", options.metrics_listen, "\", must be HOST:PORT"));
     }
   }
+  violations.absorb("", check_security(options.security));
   return violations.to_status();
 }
 
@@ -190,6 +204,10 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   const std::vector<Setting> settings = settings_of(options);
   const auto line = read_command_line(argc, argv, settings, exit_code);
   if (!line) return std::nullopt;
+  if (!line->audit_files.empty()) {
+    exit_code = print_audit_verification(line->audit_files);
+    return std::nullopt;
+  }
   const auto given = collect(*line, settings, options);
   if (!given.ok()) {
     std::cerr << "lipofilld: the configuration cannot be used\n";

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/ops/settings.h"
+#include "server/security/security_settings.h"
 
 namespace lipofill::server {
 
@@ -30,6 +31,8 @@ struct Options {
   double drain_timeout_s = 30.0;
   std::string log_level = "info";
   std::string log_format = "text";
+  bool reflection = true;
+  SecuritySettings security;
 };
 
 /// Every setting there is. A new one is a member of Options and an entry here: the file, the environment, the command

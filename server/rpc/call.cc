@@ -53,8 +53,8 @@ Call read_call(const std::string& method, const Metadata& metadata) {
   return call;
 }
 
-const Call& call_of(grpc::CallbackServerContext* context) {
-  return static_cast<CallContext*>(context)->call;
+Call& call_of(grpc::CallbackServerContext* context) {
+  return *static_cast<CallContext*>(context)->call;
 }
 
 }  // namespace lipofill::server

@@ -4,22 +4,31 @@
 #include <grpcpp/server_context.h>
 
 #include <map>
-#include <optional>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "server/ops/logging.h"
+#include "server/security/principal.h"
 
 namespace lipofill::server {
 
-/// What the daemon knows of a call before its method is carried out.
+class CallGate;
+
+/// What the daemon knows of a call: at first what comes with it, then what its request is about.
 struct Call {
   std::string method;      ///< "/lipofill.v1.PatientService/GetPatient"
   std::string request_id;  ///< the client's x-request-id, or one that was made for it
   std::string trace_id;    ///< of the client's W3C traceparent; empty without one
   std::string parent_id;   ///< the client's span, the same way
-  /// Why it is not to be carried out; whatever answers calls looks here first.
-  absl::Status refusal;
+  Principal principal;     ///< who calls, once admitted
+  /// Why it is not to be carried out; whatever answers calls looks here first. A call that nobody has looked at is not.
+  absl::Status refusal = absl::PermissionDeniedError("the call was not admitted");
+  CallGate* gate = nullptr;
+  std::vector<std::string> resources = {};  ///< that its request names, once it was checked
+  std::string made = {};                    ///< the name of what it made
+  bool begun = false;                       ///< the audit log has it
 
   /// What lines of the log say of it.
   LogFields log_fields() const;
@@ -34,11 +43,12 @@ Call read_call(const std::string& method, const Metadata& metadata);
 /// The context of a call with what is known of it. Every call of a service of ours has one: see CallContextAllocator.
 class CallContext : public grpc::CallbackServerContext {
  public:
-  Call call;
+  /// Shared with its watcher, which outlasts the context by a moment.
+  const std::shared_ptr<Call> call = std::make_shared<Call>();
 };
 
 /// What is known of the call.
-const Call& call_of(grpc::CallbackServerContext* context);
+Call& call_of(grpc::CallbackServerContext* context);
 
 /// gRPC gives contexts back through the base class whoever made them, also those of calls to methods there are not
 /// (they are generic): all must come from here.

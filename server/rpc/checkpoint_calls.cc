@@ -30,7 +30,8 @@ struct RestoreTarget {
   RequestKey key;
 };
 
-absl::StatusOr<RestoreTarget> find_target(Backend& backend, const v1::RestoreSimulationRequest& request) {
+absl::StatusOr<RestoreTarget> find_target(Backend& backend, const Principal& caller,
+                                          const v1::RestoreSimulationRequest& request) {
   FieldViolations violations;
   violations.absorb("", check_request_id(request.request_id()));
   violations.absorb("", check_display_name(request.display_name(), "display_name"));
@@ -47,7 +48,7 @@ absl::StatusOr<RestoreTarget> find_target(Backend& backend, const v1::RestoreSim
   auto source = backend.store.get_simulation(parts->simulation);
   if (!source.ok()) return source.status();
   return RestoreTarget{*std::move(checkpoint), *std::move(source),
-                       make_request_key("RestoreSimulation", request.request_id(), request)};
+                       make_request_key(caller, "RestoreSimulation", request.request_id(), request)};
 }
 
 absl::StatusOr<v1::Simulation> take_back(Backend& backend, const RestoreTarget& target) {
@@ -85,7 +86,7 @@ absl::StatusOr<CheckpointRecord> copy_checkpoint(Backend& backend, const LoadedC
 
 absl::StatusOr<v1::Simulation> begin_from(Backend& backend, const RestoreTarget& target,
                                           const v1::RestoreSimulationRequest& request) {
-  const auto id = id_or_new(request.simulation_id(), 'x', "simulation_id");
+  const auto id = id_or_new(request.simulation_id(), 'x', "simulation_id", target.source.tenant);
   if (!id.ok()) return id.status();
   if (backend.store.get_simulation(*id).ok()) {
     return absl::AlreadyExistsError(absl::StrCat(simulation_name(*id), " exists"));
@@ -101,6 +102,7 @@ absl::StatusOr<v1::Simulation> begin_from(Backend& backend, const RestoreTarget&
   record.spec_message = loaded->content.spec_message;
   record.create_time_us = now_us();
   record.origin = request.checkpoint();
+  record.tenant = target.source.tenant;
   const auto copy = copy_checkpoint(backend, *loaded, target.checkpoint, *id);
   if (!copy.ok()) return copy.status();
   const auto kept = backend.store.create_simulation_from(record, *copy, target.key);
@@ -155,7 +157,8 @@ absl::StatusOr<LoadedCheckpoint> load_checkpoint(Backend& backend, const Checkpo
   return loaded;
 }
 
-absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const v1::CreateCheckpointRequest& request) {
+absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const Principal& caller,
+                                                 const v1::CreateCheckpointRequest& request) {
   FieldViolations violations;
   const auto simulation = parse_simulation_name(request.parent(), "parent");
   violations.absorb("", simulation.status());
@@ -163,7 +166,7 @@ absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const v1::Cre
   const auto id = id_or_new(request.checkpoint_id(), 'c', "checkpoint_id");
   violations.absorb("", id.status());
   if (!violations.empty()) return violations.to_status();
-  const RequestKey key = make_request_key("CreateCheckpoint", request.request_id(), request);
+  const RequestKey key = make_request_key(caller, "CreateCheckpoint", request.request_id(), request);
   const auto earlier = backend.store.find_request(key);
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) {
@@ -186,12 +189,13 @@ absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const v1::Cre
   return to_checkpoint(*record);
 }
 
-absl::StatusOr<v1::Simulation> restore_simulation(Backend& backend, const v1::RestoreSimulationRequest& request) {
-  const RequestKey key = make_request_key("RestoreSimulation", request.request_id(), request);
+absl::StatusOr<v1::Simulation> restore_simulation(Backend& backend, const Principal& caller,
+                                                  const v1::RestoreSimulationRequest& request) {
+  const RequestKey key = make_request_key(caller, "RestoreSimulation", request.request_id(), request);
   const auto earlier = backend.store.find_request(key);
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) return show_made_before(backend, **earlier, request.start());
-  const auto target = find_target(backend, request);
+  const auto target = find_target(backend, caller, request);
   if (!target.ok()) return target.status();
   return request.as_new() ? begin_from(backend, *target, request) : take_back(backend, *target);
 }

@@ -5,6 +5,7 @@
 #include "absl/status/statusor.h"
 #include "lipofill/v1/simulation_service.pb.h"
 #include "server/rpc/backend.h"
+#include "server/security/principal.h"
 
 namespace lipofill::server {
 
@@ -15,11 +16,13 @@ v1::Checkpoint to_checkpoint(const CheckpointRecord& record);
 absl::Status no_session_for(const char* what, const SimulationRecord& record);
 
 /// Keeps the state of a live simulation, or finds the checkpoint that an equal request made.
-absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const v1::CreateCheckpointRequest& request);
+absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const Principal& caller,
+                                                 const v1::CreateCheckpointRequest& request);
 
 /// Takes a live simulation back, or begins a new one, as the request says. May take seconds: the model may have to be
 /// built again. DATA_LOSS for a checkpoint whose file is damaged.
-absl::StatusOr<v1::Simulation> restore_simulation(Backend& backend, const v1::RestoreSimulationRequest& request);
+absl::StatusOr<v1::Simulation> restore_simulation(Backend& backend, const Principal& caller,
+                                                  const v1::RestoreSimulationRequest& request);
 
 /// A checkpoint as it is read back: its plan, and a simulation in its state.
 struct LoadedCheckpoint {

@@ -84,6 +84,10 @@ absl::StatusOr<ViewerOptions> to_viewer_options(const v1::WatchRequest& request)
   return options;
 }
 
+Courier::Clock::time_point to_steady(Principal::Clock::time_point time) {
+  return Courier::Clock::now() + std::chrono::ceil<Courier::Clock::duration>(time - Principal::Clock::now());
+}
+
 }  // namespace
 
 grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameService::Watch(grpc::CallbackServerContext* context,
@@ -111,6 +115,7 @@ absl::Status FrameService::begin(grpc::CallbackServerContext* context, const grp
   }
   stream = std::make_shared<WatchStream>(backend_.courier, backend_.metrics, request->known_topology_hash(),
                                          std::move(place));
+  if (const auto& expires = call_of(context).principal.expires) stream->end_at(to_steady(*expires));
   if (const auto session = backend_.sessions.find(*id); session != nullptr) {
     return watch_session(*request, session, stream);
   }

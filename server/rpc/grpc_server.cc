@@ -2,6 +2,8 @@
 
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/impl/server_builder_option.h>
+#include <grpcpp/impl/server_builder_plugin.h>
 #include <grpcpp/server_builder.h>
 #include <sys/stat.h>
 
@@ -13,7 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "server/rpc/call_watcher.h"
-#include "server/rpc/method_rules.h"
+#include "server/rpc/tls_credentials.h"
 #include "server/sessions/draining.h"
 #include "spdlog/spdlog.h"
 
@@ -40,18 +42,21 @@ void set_channel_arguments(const BackendOptions& options, grpc::ServerBuilder& b
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 256);
 }
 
-absl::Status admit(const Backend& backend, const Call& call) {
-  if (backend.stopping && effect_of(call.method) == Effect::kBegins) return draining();
-  return absl::OkStatus();
-}
-
-void watch_calls(grpc::ServerBuilder& builder, Backend& backend) {
+void watch_calls(grpc::ServerBuilder& builder, Metrics& metrics, CallGate& gate) {
   builder.SetContextAllocator(std::make_unique<CallContextAllocator>());
   std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> watchers;
-  watchers.push_back(
-      std::make_unique<CallWatchers>(backend.metrics, [&backend](const Call& call) { return admit(backend, call); }));
+  watchers.push_back(std::make_unique<CallWatchers>(metrics, gate));
   builder.experimental().SetInterceptorCreators(std::move(watchers));
 }
+
+/// Reflection comes by a plugin that is there as soon as its library is linked.
+class WithoutReflection : public grpc::ServerBuilderOption {
+ public:
+  void UpdateArguments(grpc::ChannelArguments*) override {}
+  void UpdatePlugins(std::vector<std::unique_ptr<grpc::ServerBuilderPlugin>>* plugins) override {
+    std::erase_if(*plugins, [](const auto& plugin) { return plugin->name() == "proto_server_reflection"; });
+  }
+};
 
 bool is_unix(const std::string& address) {
   return absl::StartsWith(address, "unix:");
@@ -68,21 +73,29 @@ void restrict_sockets(const std::vector<std::string>& addresses) {
 
 }  // namespace
 
-GrpcServer::GrpcServer(Backend& backend)
-    : backend_(backend), patients_(backend), operations_(backend), simulations_(backend), frames_(backend) {}
+GrpcServer::GrpcServer(const ServiceGuard& guard, Backend& backend)
+    : backend_(backend),
+      gate_(backend, guard.authenticator, guard.audit),
+      patients_(backend),
+      operations_(backend),
+      simulations_(backend),
+      frames_(backend) {}
 
 absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<std::string>& addresses,
-                                                              Backend& backend) {
+                                                              const ServiceGuard& guard, Backend& backend) {
   grpc::EnableDefaultHealthCheckService(true);
   // Named, so that the linker keeps the library.
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-  std::unique_ptr<GrpcServer> self(new GrpcServer(backend));
+  std::unique_ptr<GrpcServer> self(new GrpcServer(guard, backend));
   grpc::ServerBuilder builder;
   set_channel_arguments(backend.options, builder);
-  watch_calls(builder, backend);
+  watch_calls(builder, backend.metrics, self->gate_);
+  if (!guard.reflection) builder.SetOption(std::make_unique<WithoutReflection>());
+  const auto plain = grpc::InsecureServerCredentials();
+  const auto on_tcp = guard.settings.has_tls() ? make_tls_credentials(guard.settings) : plain;
   std::vector<int> ports(addresses.size());
   for (size_t i = 0; i < addresses.size(); ++i) {
-    builder.AddListeningPort(addresses[i], grpc::InsecureServerCredentials(), &ports[i]);
+    builder.AddListeningPort(addresses[i], is_unix(addresses[i]) ? plain : on_tcp, &ports[i]);
   }
   builder.RegisterService(&self->patients_);
   builder.RegisterService(&self->operations_);

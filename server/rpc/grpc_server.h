@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "server/rpc/backend.h"
+#include "server/rpc/call_gate.h"
 #include "server/rpc/frame_service.h"
 #include "server/rpc/operation_service.h"
 #include "server/rpc/patient_service.h"
@@ -17,12 +18,22 @@
 
 namespace lipofill::server {
 
+/// How the services are guarded.
+struct ServiceGuard {
+  const SecuritySettings& settings;
+  const Authenticator& authenticator;
+  AuditLog* audit = nullptr;  ///< nullptr: nothing is written down
+  bool reflection = true;
+};
+
 /// The services on TCP ports and UNIX sockets, with standard health and reflection. Every call passes CallWatchers.
 class GrpcServer {
  public:
   /// @param addresses  host:port (port 0 takes a free one) or unix:path. Users of the socket's group may write to it.
+  /// @param guard      who may do what; outlives the server. TCP is served with TLS where it has that.
   /// UNAVAILABLE when one cannot be listened on, also when another program already does.
-  static absl::StatusOr<std::unique_ptr<GrpcServer>> start(const std::vector<std::string>& addresses, Backend& backend);
+  static absl::StatusOr<std::unique_ptr<GrpcServer>> start(const std::vector<std::string>& addresses,
+                                                           const ServiceGuard& guard, Backend& backend);
 
   /// Of the first address on TCP; 0 when there is none.
   int port() const { return port_; }
@@ -37,11 +48,12 @@ class GrpcServer {
   bool drain(Seconds delay, Seconds timeout);
 
  private:
-  explicit GrpcServer(Backend& backend);
+  GrpcServer(const ServiceGuard& guard, Backend& backend);
   /// Ready when the last call has ended; those that have not within `grace` are cancelled.
   std::future<void> end_calls(Seconds grace);
 
   Backend& backend_;
+  CallGate gate_;
   PatientService patients_;
   OperationService operations_;
   SimulationService simulations_;

@@ -64,6 +64,8 @@ simulation::MeshTopology make_scan(const geometry::SurfaceMesh& scan) {
 /// Writes prepared slices one after the other.
 class DownloadStream : public grpc::ServerWriteReactor<v1::MeshSlice> {
  public:
+  explicit DownloadStream(grpc::CallbackServerContext* context) : context_(context) {}
+
   void send(std::vector<v1::MeshSlice> slices) {
     slices_ = std::move(slices);
     StartWrite(&slices_[0]);
@@ -73,11 +75,13 @@ class DownloadStream : public grpc::ServerWriteReactor<v1::MeshSlice> {
   void OnWriteDone(bool ok) override {
     if (!ok) return Finish(to_grpc_status(absl::CancelledError("the client has gone")));
     if (++sent_ == slices_.size()) return Finish(grpc::Status::OK);
+    if (const absl::Status known = check_still_known(context_); !known.ok()) return fail(known);
     StartWrite(&slices_[sent_]);
   }
   void OnDone() override { delete this; }
 
  private:
+  grpc::CallbackServerContext* const context_;
   std::vector<v1::MeshSlice> slices_;
   size_t sent_ = 0;
 };
@@ -107,9 +111,9 @@ Slices slice_scan(Backend& backend, const std::string& name) {
 }
 
 /// Makes the slices on a thread for long calls and sends them, or says why it cannot.
-grpc::ServerWriteReactor<v1::MeshSlice>* send_slices(Backend& backend, const absl::Status& valid,
-                                                     std::function<Slices()> make) {
-  auto* stream = new DownloadStream;
+grpc::ServerWriteReactor<v1::MeshSlice>* send_slices(Backend& backend, grpc::CallbackServerContext* context,
+                                                     const absl::Status& valid, std::function<Slices()> make) {
+  auto* stream = new DownloadStream(context);
   if (!valid.ok()) {
     stream->fail(valid);
     return stream;
@@ -144,14 +148,14 @@ grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend, g
                                                              const v1::DownloadModelMeshRequest& request) {
   absl::Status valid = check_call(context, request);
   valid.Update(parse_model_name(request.name(), "name").status());
-  return send_slices(backend, valid, [&backend, name = request.name()] { return slice_model(backend, name); });
+  return send_slices(backend, context, valid, [&backend, name = request.name()] { return slice_model(backend, name); });
 }
 
 grpc::ServerWriteReactor<v1::MeshSlice>* download_scan_mesh(Backend& backend, grpc::CallbackServerContext* context,
                                                             const v1::DownloadScanMeshRequest& request) {
   absl::Status valid = check_call(context, request);
   valid.Update(parse_scan_name(request.name(), "name").status());
-  return send_slices(backend, valid, [&backend, name = request.name()] { return slice_scan(backend, name); });
+  return send_slices(backend, context, valid, [&backend, name = request.name()] { return slice_scan(backend, name); });
 }
 
 }  // namespace lipofill::server

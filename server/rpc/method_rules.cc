@@ -5,63 +5,70 @@
 namespace lipofill::server {
 namespace {
 
-const std::map<std::string, Effect>& rules() {
-  static const std::map<std::string, Effect> rules = {
-      {"/grpc.health.v1.Health/Check", Effect::kNone},
-      {"/grpc.health.v1.Health/Watch", Effect::kNone},
-      {"/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", Effect::kNone},
-      {"/lipofill.v1.FrameService/AcknowledgeFrame", Effect::kSteers},
-      {"/lipofill.v1.FrameService/Watch", Effect::kBegins},
-      {"/lipofill.v1.OperationService/CancelOperation", Effect::kSteers},
-      {"/lipofill.v1.OperationService/GetOperation", Effect::kNone},
-      {"/lipofill.v1.OperationService/ListOperations", Effect::kNone},
-      {"/lipofill.v1.OperationService/WaitOperation", Effect::kNone},
-      {"/lipofill.v1.PatientService/BuildModel", Effect::kBegins},
-      {"/lipofill.v1.PatientService/CreatePatient", Effect::kBegins},
-      {"/lipofill.v1.PatientService/CreateScan", Effect::kBegins},
-      {"/lipofill.v1.PatientService/DeleteModel", Effect::kSteers},
-      {"/lipofill.v1.PatientService/DeletePatient", Effect::kSteers},
-      {"/lipofill.v1.PatientService/DeleteScan", Effect::kSteers},
-      {"/lipofill.v1.PatientService/DownloadModelMesh", Effect::kNone},
-      {"/lipofill.v1.PatientService/DownloadScanMesh", Effect::kNone},
-      {"/lipofill.v1.PatientService/GetModel", Effect::kNone},
-      {"/lipofill.v1.PatientService/GetPatient", Effect::kNone},
-      {"/lipofill.v1.PatientService/GetScan", Effect::kNone},
-      {"/lipofill.v1.PatientService/ListModels", Effect::kNone},
-      {"/lipofill.v1.PatientService/ListPatients", Effect::kNone},
-      {"/lipofill.v1.PatientService/ListScans", Effect::kNone},
-      {"/lipofill.v1.PatientService/UpdatePatient", Effect::kSteers},
-      {"/lipofill.v1.PatientService/UploadScan", Effect::kBegins},
-      {"/lipofill.v1.SimulationService/CreateCheckpoint", Effect::kBegins},
-      {"/lipofill.v1.SimulationService/CreateSimulation", Effect::kBegins},
-      {"/lipofill.v1.SimulationService/DeleteCheckpoint", Effect::kSteers},
-      {"/lipofill.v1.SimulationService/DeleteSimulation", Effect::kSteers},
-      {"/lipofill.v1.SimulationService/EvaluateSimulation", Effect::kNone},
-      {"/lipofill.v1.SimulationService/ExportTissueDeck", Effect::kNone},
-      {"/lipofill.v1.SimulationService/GetCheckpoint", Effect::kNone},
-      {"/lipofill.v1.SimulationService/GetSeries", Effect::kNone},
-      {"/lipofill.v1.SimulationService/GetSimulation", Effect::kNone},
-      {"/lipofill.v1.SimulationService/Inject", Effect::kBegins},
-      {"/lipofill.v1.SimulationService/ListCheckpoints", Effect::kNone},
-      {"/lipofill.v1.SimulationService/ListSimulations", Effect::kNone},
-      {"/lipofill.v1.SimulationService/PauseSimulation", Effect::kSteers},
-      {"/lipofill.v1.SimulationService/RestoreSimulation", Effect::kBegins},
-      {"/lipofill.v1.SimulationService/ResumeSimulation", Effect::kBegins},
-      {"/lipofill.v1.SimulationService/StartSimulation", Effect::kBegins},
-      {"/lipofill.v1.SimulationService/StopSimulation", Effect::kSteers},
+constexpr MethodRule kOpen{Effect::kNone, Role::kNone, true};
+
+const std::map<std::string, MethodRule>& rules() {
+  static const std::map<std::string, MethodRule> rules = {
+      {"/grpc.health.v1.Health/Check", kOpen},
+      {"/grpc.health.v1.Health/Watch", kOpen},
+      {"/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", kOpen},
+      {"/lipofill.v1.FrameService/AcknowledgeFrame", {Effect::kSteers, Role::kViewer, false, true}},
+      {"/lipofill.v1.FrameService/Watch", {Effect::kBegins, Role::kViewer}},
+      {"/lipofill.v1.OperationService/CancelOperation", {Effect::kSteers, Role::kPlanner}},
+      {"/lipofill.v1.OperationService/GetOperation", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.OperationService/ListOperations", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.OperationService/WaitOperation", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.PatientService/BuildModel", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.PatientService/CreatePatient", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.PatientService/CreateScan", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.PatientService/DeleteModel", {Effect::kSteers, Role::kPlanner}},
+      {"/lipofill.v1.PatientService/DeletePatient", {Effect::kSteers, Role::kAdmin}},
+      {"/lipofill.v1.PatientService/DeleteScan", {Effect::kSteers, Role::kPlanner}},
+      {"/lipofill.v1.PatientService/DownloadModelMesh", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.PatientService/DownloadScanMesh", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.PatientService/GetModel", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.PatientService/GetPatient", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.PatientService/GetScan", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.PatientService/ListModels", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.PatientService/ListPatients", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.PatientService/ListScans", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.PatientService/UpdatePatient", {Effect::kSteers, Role::kPlanner}},
+      {"/lipofill.v1.PatientService/UploadScan", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/CreateCheckpoint", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/CreateSimulation", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/DeleteCheckpoint", {Effect::kSteers, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/DeleteSimulation", {Effect::kSteers, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/EvaluateSimulation", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.SimulationService/ExportTissueDeck", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.SimulationService/GetCheckpoint", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.SimulationService/GetSeries", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.SimulationService/GetSimulation", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.SimulationService/Inject", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/ListCheckpoints", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.SimulationService/ListSimulations", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.SimulationService/PauseSimulation", {Effect::kSteers, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/RestoreSimulation", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/ResumeSimulation", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/StartSimulation", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/StopSimulation", {Effect::kSteers, Role::kPlanner}},
   };
   return rules;
 }
 
 }  // namespace
 
-Effect effect_of(const std::string& method) {
+const MethodRule* rule_of(const std::string& method) {
   const auto found = rules().find(method);
-  return found == rules().end() ? Effect::kNone : found->second;
+  return found == rules().end() ? nullptr : &found->second;
+}
+
+Effect effect_of(const std::string& method) {
+  const MethodRule* rule = rule_of(method);
+  return rule == nullptr ? Effect::kNone : rule->effect;
 }
 
 bool has_rule(const std::string& method) {
-  return rules().contains(method);
+  return rule_of(method) != nullptr;
 }
 
 }  // namespace lipofill::server

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "server/security/principal.h"
+
 namespace lipofill::server {
 
 /// What a call does to the daemon.
@@ -10,6 +12,18 @@ enum class Effect {
   kSteers,  ///< changes or ends what is there
   kBegins,  ///< brings in something new, or work: refused while the daemon drains
 };
+
+/// What a method does, and who may have it done.
+struct MethodRule {
+  Effect effect = Effect::kNone;
+  Role least = Role::kAdmin;
+  bool is_open = false;      ///< to everybody, also to those who do not say who they are
+  bool is_frequent = false;  ///< so often that the audit log has only what is refused of it
+};
+
+/// The rule of a method by its full name, "/lipofill.v1.PatientService/GetPatient"; nullptr without one: nobody may
+/// call it.
+const MethodRule* rule_of(const std::string& method);
 
 /// The effect of a method by its full name, "/lipofill.v1.PatientService/GetPatient"; kNone of one that there is not. A
 /// new method must have its line in the table: tests/unit/server/call_test.cc walks all services.

@@ -189,14 +189,15 @@ absl::StatusOr<simulation::FaceModelSpec> read_model_spec(Backend& backend, cons
   return spec;
 }
 
-absl::StatusOr<OperationView> start_model_build(Backend& backend, const v1::BuildModelRequest& request) {
+absl::StatusOr<OperationView> start_model_build(Backend& backend, const Principal& caller,
+                                                const v1::BuildModelRequest& request) {
   const auto patient = parse_patient_name(request.parent(), "parent");
   if (!patient.ok()) return patient.status();
   if (auto good = check_request_id(request.request_id()); !good.ok()) return good;
   if (const auto known = backend.store.get_patient(*patient); !known.ok()) return known.status();
   if (const auto good = check_spec(backend, *patient, request); !good.ok()) return good;
   if (request.validate_only()) return checked_only(request);
-  const RequestKey key = make_request_key("BuildModel", request.request_id(), request);
+  const RequestKey key = make_request_key(caller, "BuildModel", request.request_id(), request);
   const auto earlier = find_earlier(backend, *patient, key);
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) return **earlier;

@@ -7,6 +7,7 @@
 #include "lipofill/v1/model.pb.h"
 #include "lipofill/v1/patient_service.pb.h"
 #include "server/rpc/backend.h"
+#include "server/security/principal.h"
 
 namespace lipofill::server {
 
@@ -17,6 +18,7 @@ absl::StatusOr<simulation::FaceModelSpec> read_model_spec(Backend& backend, cons
                                                           const v1::ModelSpec& message);
 
 /// Starts the operation that builds a model, or finds the one an equal request started. What can be refused at once is.
-absl::StatusOr<OperationView> start_model_build(Backend& backend, const v1::BuildModelRequest& request);
+absl::StatusOr<OperationView> start_model_build(Backend& backend, const Principal& caller,
+                                                const v1::BuildModelRequest& request);
 
 }  // namespace lipofill::server

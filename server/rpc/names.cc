@@ -4,10 +4,12 @@
 #include <vector>
 
 #include "absl/strings/escaping.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "core/base/field_violations.h"
 #include "server/sessions/identifiers.h"
+#include "server/store/scope.h"
 
 namespace lipofill::server {
 namespace {
@@ -17,11 +19,6 @@ constexpr int kMaxPage = 1000;
 
 bool is_id_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
-}
-
-bool is_id(const std::string& text) {
-  return !text.empty() && text.size() <= kMaxId && text[0] >= 'a' && text[0] <= 'z' &&
-         std::all_of(text.begin(), text.end(), is_id_character);
 }
 
 /// A value as a message may echo it: short and printable.
@@ -61,6 +58,11 @@ absl::StatusOr<PatientChild> parse_child(const char* collection, const std::stri
 
 }  // namespace
 
+bool is_id(const std::string& text) {
+  return !text.empty() && text.size() <= kMaxId && text[0] >= 'a' && text[0] <= 'z' &&
+         std::all_of(text.begin(), text.end(), is_id_character);
+}
+
 absl::StatusOr<std::string> parse_patient_name(const std::string& name, const std::string& field) {
   return parse_single("patients", name, field);
 }
@@ -86,6 +88,15 @@ absl::StatusOr<std::string> id_or_new(const std::string& id, char prefix, const 
   if (id.empty()) return make_id(prefix);
   if (is_id(id)) return id;
   return field_violation(field, absl::StrCat("is ", quoted(id), ", must match [a-z][a-z0-9-]{0,62}"));
+}
+
+absl::StatusOr<std::string> id_or_new(const std::string& id, char prefix, const std::string& field,
+                                      const std::string& tenant) {
+  if (!id.empty() && tenant != kLocalTenant && !absl::StartsWith(id, tenant + "-")) {
+    return field_violation(field, absl::StrCat("is ", quoted(id), ", must begin with \"", tenant,
+                                               "-\", the name of the caller's tenant, or be empty"));
+  }
+  return id_or_new(id, prefix, field);
 }
 
 absl::Status check_display_name(const std::string& text, const std::string& field) {

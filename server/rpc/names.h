@@ -27,8 +27,15 @@ absl::StatusOr<std::string> parse_simulation_name(const std::string& name, const
 absl::StatusOr<CheckpointParts> parse_checkpoint_name(const std::string& name, const std::string& field);
 absl::StatusOr<std::string> parse_operation_name(const std::string& name, const std::string& field);
 
+/// Whether a text matches [a-z][a-z0-9-]{0,62}.
+bool is_id(const std::string& text);
+
 /// The id given, or a new one when it is empty. INVALID_ARGUMENT unless it matches [a-z][a-z0-9-]{0,62}.
 absl::StatusOr<std::string> id_or_new(const std::string& id, char prefix, const std::string& field);
+/// The same for ids that tenants share: an id that a tenant chooses begins with the tenant's name and '-', so that
+/// nobody learns from a collision what others have. Those of "local" are free.
+absl::StatusOr<std::string> id_or_new(const std::string& id, char prefix, const std::string& field,
+                                      const std::string& tenant);
 
 /// A name for people: at most 63 characters of [a-z0-9-].
 absl::Status check_display_name(const std::string& text, const std::string& field);

@@ -65,7 +65,7 @@ OperationService::Reactor* OperationService::ListOperations(Context* context, co
   return answer(context, request, [&]() -> absl::Status {
     const auto page = parse_page("operations", request->page_size(), request->page_token());
     if (!page.ok()) return page.status();
-    const auto operations = backend_.operations.list(one_more(*page));
+    const auto operations = backend_.operations.list(call_of(context).principal.scope, one_more(*page));
     response->set_next_page_token(fill_page(
         "operations", *page, operations,
         [this, response](const OperationView& view) { *response->add_operations() = to_operation(backend_, view); }));
@@ -87,10 +87,13 @@ OperationService::Reactor* OperationService::WaitOperation(Context* context, con
   }
   std::optional<double> seen;
   if (request->has_seen_progress()) seen = request->seen_progress();
-  backend_.operations.wait(*id, *timeout, seen, [this, reactor, response](const absl::StatusOr<OperationView>& view) {
-    if (view.ok()) *response = to_operation(backend_, *view);
-    reactor->Finish(to_grpc_status(view.status()));
-  });
+  backend_.operations.wait(*id, *timeout, seen,
+                           [this, context, reactor, response](const absl::StatusOr<OperationView>& view) {
+                             absl::Status done = view.status();
+                             done.Update(check_still_known(context));
+                             if (done.ok()) *response = to_operation(backend_, *view);
+                             reactor->Finish(to_grpc_status(done));
+                           });
   return reactor;
 }
 

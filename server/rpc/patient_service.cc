@@ -12,6 +12,7 @@
 #include "server/rpc/request_key.h"
 #include "server/rpc/timestamps.h"
 #include "server/rpc/unary.h"
+#include "server/security/refusals.h"
 #include "server/sessions/identifiers.h"
 #include "server/store/sqlite_store.h"
 #include "spdlog/spdlog.h"
@@ -49,23 +50,28 @@ absl::StatusOr<std::map<std::string, std::string>> read_labels(const Labels& lab
   return sorted;
 }
 
-absl::Status create_patient(Backend& backend, const v1::CreatePatientRequest& request, v1::Patient& response) {
+absl::Status create_patient(Backend& backend, const Principal& caller, const v1::CreatePatientRequest& request,
+                            v1::Patient& response) {
   FieldViolations violations;
   violations.absorb("", check_request_id(request.request_id()));
-  const auto id = id_or_new(request.patient_id(), 'p', "patient_id");
+  const auto id = id_or_new(request.patient_id(), 'p', "patient_id", caller.scope.tenant);
   violations.absorb("", id.status());
   violations.absorb("", check_display_name(request.display_name(), "display_name"));
   const auto labels = read_labels(request.labels(), "labels");
   violations.absorb("", labels.status());
   if (!violations.empty()) return violations.to_status();
-  const PatientRecord draft{*id, request.display_name(), *labels, now_us()};
+  if (!caller.scope.has(caller.scope.tenant, *id)) {
+    return permission_denied("PATIENT_NOT_YOURS",
+                             "the caller is limited to certain patients, this one is not among them");
+  }
+  const PatientRecord draft{*id, request.display_name(), *labels, now_us(), caller.scope.tenant};
   if (request.validate_only()) {
     if (backend.store.get_patient(*id).ok()) return absl::AlreadyExistsError(patient_name(*id) + " exists");
     response = to_patient(draft);
     return absl::OkStatus();
   }
   const auto made =
-      backend.store.create_patient(draft, make_request_key("CreatePatient", request.request_id(), request));
+      backend.store.create_patient(draft, make_request_key(caller, "CreatePatient", request.request_id(), request));
   if (!made.ok()) return made.status();
   spdlog::info("{} created", patient_name(made->id));
   response = to_patient(*made);
@@ -127,7 +133,8 @@ absl::Status delete_patient(Backend& backend, const v1::DeletePatientRequest& re
 
 PatientService::Reactor* PatientService::CreatePatient(Context* context, const v1::CreatePatientRequest* request,
                                                        v1::Patient* response) {
-  return answer(context, request, [&] { return create_patient(backend_, *request, *response); });
+  return answer(context, request,
+                [&] { return create_patient(backend_, call_of(context).principal, *request, *response); });
 }
 
 PatientService::Reactor* PatientService::GetPatient(Context* context, const v1::GetPatientRequest* request,
@@ -146,7 +153,7 @@ PatientService::Reactor* PatientService::ListPatients(Context* context, const v1
   return answer(context, request, [&]() -> absl::Status {
     const auto page = parse_page("patients", request->page_size(), request->page_token());
     if (!page.ok()) return page.status();
-    const auto patients = backend_.store.list_patients(one_more(*page));
+    const auto patients = backend_.store.list_patients(call_of(context).principal.scope, one_more(*page));
     if (!patients.ok()) return patients.status();
     response->set_next_page_token(fill_page("patients", *page, *patients, [response](const PatientRecord& patient) {
       *response->add_patients() = to_patient(patient);
@@ -170,7 +177,7 @@ PatientService::Reactor* PatientService::DeletePatient(Context* context, const v
 PatientService::Reactor* PatientService::CreateScan(Context* context, const v1::CreateScanRequest* request,
                                                     v1::Scan* response) {
   return answer(context, request, [&] {
-    auto scan = uploads_.create(*request);
+    auto scan = uploads_.create(call_of(context).principal, *request);
     if (scan.ok()) *response = *std::move(scan);
     return scan.status();
   });
@@ -224,7 +231,7 @@ PatientService::Reactor* PatientService::DeleteScan(Context* context, const v1::
 PatientService::Reactor* PatientService::BuildModel(Context* context, const v1::BuildModelRequest* request,
                                                     v1::Operation* response) {
   return answer(context, request, [&]() -> absl::Status {
-    const auto operation = start_model_build(backend_, *request);
+    const auto operation = start_model_build(backend_, call_of(context).principal, *request);
     if (operation.ok()) *response = to_operation(backend_, *operation);
     return operation.status();
   });

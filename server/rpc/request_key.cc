@@ -7,9 +7,9 @@
 
 namespace lipofill::server {
 
-RequestKey make_request_key(const std::string& method, const std::string& request_id,
+RequestKey make_request_key(const Principal& caller, const std::string& method, const std::string& request_id,
                             const google::protobuf::Message& request) {
-  if (request_id.empty()) return {method, "", ""};
+  if (request_id.empty()) return {method, "", "", caller.scope.tenant};
   std::string bytes;
   {
     google::protobuf::io::StringOutputStream sink(&bytes);
@@ -19,7 +19,7 @@ RequestKey make_request_key(const std::string& method, const std::string& reques
   }
   Hasher hasher;
   hasher.add(bytes);
-  return {method, request_id, hasher.hex_digest()};
+  return {method, request_id, hasher.hex_digest(), caller.scope.tenant};
 }
 
 }  // namespace lipofill::server

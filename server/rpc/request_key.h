@@ -4,12 +4,13 @@
 
 #include <string>
 
+#include "server/security/principal.h"
 #include "server/store/records.h"
 
 namespace lipofill::server {
 
-/// For the idempotency of a create: a request_id stands for one request, byte for byte, maps in order.
-RequestKey make_request_key(const std::string& method, const std::string& request_id,
+/// For the idempotency of a create: a request_id stands for one request of a tenant, byte for byte, maps in order.
+RequestKey make_request_key(const Principal& caller, const std::string& method, const std::string& request_id,
                             const google::protobuf::Message& request);
 
 }  // namespace lipofill::server

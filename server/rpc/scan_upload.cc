@@ -124,7 +124,7 @@ v1::Scan to_scan(const ScanRecord& record) {
   return scan;
 }
 
-absl::StatusOr<v1::Scan> ScanUploads::create(const v1::CreateScanRequest& request) {
+absl::StatusOr<v1::Scan> ScanUploads::create(const Principal& caller, const v1::CreateScanRequest& request) {
   const auto patient = parse_patient_name(request.parent(), "parent");
   if (!patient.ok()) return patient.status();
   if (auto good = check_request_id(request.request_id()); !good.ok()) return good;
@@ -141,7 +141,7 @@ absl::StatusOr<v1::Scan> ScanUploads::create(const v1::CreateScanRequest& reques
     const auto owner = backend_.store.get_patient(*patient);
     return owner.ok() ? absl::StatusOr<v1::Scan>(to_scan(record)) : owner.status();
   }
-  const auto made = backend_.store.create_scan(record, make_request_key("CreateScan", request.request_id(), request));
+  const auto made = backend_.store.create_scan(record, make_request_key(caller, "CreateScan", request.request_id(), request));
   if (!made.ok()) return made.status();
   return to_scan(*made);
 }

@@ -9,6 +9,7 @@
 
 #include "lipofill/v1/patient_service.pb.h"
 #include "server/rpc/backend.h"
+#include "server/security/principal.h"
 
 namespace lipofill::server {
 
@@ -21,7 +22,7 @@ class ScanUploads {
  public:
   explicit ScanUploads(Backend& backend) : backend_(backend) {}
 
-  absl::StatusOr<v1::Scan> create(const v1::CreateScanRequest& request);
+  absl::StatusOr<v1::Scan> create(const Principal& caller, const v1::CreateScanRequest& request);
   /// The record with the number of bytes that are really here: after a crash the file may hold fewer than were noted.
   absl::StatusOr<ScanRecord> find(const std::string& patient, const std::string& scan);
   /// Adds a chunk. INVALID_ARGUMENT for a wrong offset (naming the right one), too many bytes, a scan that is complete.

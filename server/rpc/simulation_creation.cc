@@ -18,10 +18,10 @@
 namespace lipofill::server {
 namespace {
 
-absl::StatusOr<SimulationRecord> read_request(const v1::CreateSimulationRequest& request) {
+absl::StatusOr<SimulationRecord> read_request(const Principal& caller, const v1::CreateSimulationRequest& request) {
   FieldViolations violations;
   violations.absorb("", check_request_id(request.request_id()));
-  const auto id = id_or_new(request.simulation_id(), 'x', "simulation_id");
+  const auto id = id_or_new(request.simulation_id(), 'x', "simulation_id", caller.scope.tenant);
   violations.absorb("", id.status());
   violations.absorb("", check_display_name(request.display_name(), "display_name"));
   if (!request.has_spec()) violations.add("spec", "is missing");
@@ -36,6 +36,7 @@ absl::StatusOr<SimulationRecord> read_request(const v1::CreateSimulationRequest&
   record.display_name = request.display_name();
   record.spec_message = request.spec().SerializeAsString();
   record.create_time_us = now_us();
+  record.tenant = caller.scope.tenant;
   return record;
 }
 
@@ -154,11 +155,12 @@ absl::Status delete_simulation_record(Backend& backend, const std::string& id, c
   return done;
 }
 
-absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const v1::CreateSimulationRequest& request,
+absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const Principal& caller,
+                                                 const v1::CreateSimulationRequest& request,
                                                  const std::function<bool()>& caller_has_left) {
-  const auto record = read_request(request);
+  const auto record = read_request(caller, request);
   if (!record.ok()) return record.status();
-  const RequestKey key = make_request_key("CreateSimulation", request.request_id(), request);
+  const RequestKey key = make_request_key(caller, "CreateSimulation", request.request_id(), request);
   const auto earlier = backend.store.find_request(key);
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) return show_made_before(backend, **earlier, request.start());

@@ -7,6 +7,7 @@
 #include "absl/status/statusor.h"
 #include "lipofill/v1/simulation_service.pb.h"
 #include "server/rpc/backend.h"
+#include "server/security/principal.h"
 
 namespace lipofill::server {
 
@@ -35,7 +36,8 @@ absl::Status delete_simulation_record(Backend& backend, const std::string& id, c
 
 /// Makes the simulation (the core checks the specification), its record and its session, or finds what an equal request
 /// made. May take seconds: the model may have to be built again.
-absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const v1::CreateSimulationRequest& request,
+absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const Principal& caller,
+                                                 const v1::CreateSimulationRequest& request,
                                                  const std::function<bool()>& caller_has_left);
 
 }  // namespace lipofill::server

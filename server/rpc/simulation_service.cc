@@ -90,7 +90,7 @@ Reactor* SimulationService::command(Context* context, const Request* request, v1
     const auto id = parse_simulation_name(request->name(), "name");
     if (!id.ok()) return id.status();
     if (const absl::Status valid = check_request_id(request->request_id()); !valid.ok()) return valid;
-    const RequestKey key = make_request_key(what, request->request_id(), *request);
+    const RequestKey key = make_request_key(call_of(context).principal, what, request->request_id(), *request);
     if (const auto session = backend_.sessions.find(*id); session != nullptr) {
       answered = true;
       act(*session, key, reply_to(backend_, *id, reactor, response, amend));
@@ -105,7 +105,8 @@ Reactor* SimulationService::command(Context* context, const Request* request, v1
 Reactor* SimulationService::CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                                              v1::Simulation* response) {
   return answer_later(context, request, backend_, [this, context, request, response] {
-    auto simulation = create_simulation(backend_, *request, [context] { return context->IsCancelled(); });
+    auto simulation =
+        create_simulation(backend_, call_of(context).principal, *request, [context] { return context->IsCancelled(); });
     if (simulation.ok()) *response = *std::move(simulation);
     return simulation.status();
   });
@@ -139,7 +140,7 @@ Reactor* SimulationService::ListSimulations(Context* context, const v1::ListSimu
     if (!page.ok()) return page.status();
     const auto& mask = request->read_mask();
     if (auto good = check_field_mask(mask, *v1::Simulation::descriptor(), "read_mask"); !good.ok()) return good;
-    const auto records = backend_.store.list_simulations(one_more(*page));
+    const auto records = backend_.store.list_simulations(call_of(context).principal.scope, one_more(*page));
     if (!records.ok()) return records.status();
     response->set_next_page_token(fill_page("simulations", *page, *records, [&](const SimulationRecord& record) {
       const auto session = backend_.sessions.find(record.id);
@@ -212,8 +213,8 @@ Reactor* SimulationService::Inject(Context* context, const v1::InjectRequest* re
 
 Reactor* SimulationService::CreateCheckpoint(Context* context, const v1::CreateCheckpointRequest* request,
                                              v1::Checkpoint* response) {
-  return answer_later(context, request, backend_, [this, request, response] {
-    auto checkpoint = create_checkpoint(backend_, *request);
+  return answer_later(context, request, backend_, [this, context, request, response] {
+    auto checkpoint = create_checkpoint(backend_, call_of(context).principal, *request);
     if (checkpoint.ok()) *response = *std::move(checkpoint);
     return checkpoint.status();
   });
@@ -260,8 +261,8 @@ Reactor* SimulationService::DeleteCheckpoint(Context* context, const v1::DeleteC
 
 Reactor* SimulationService::RestoreSimulation(Context* context, const v1::RestoreSimulationRequest* request,
                                               v1::Simulation* response) {
-  return answer_later(context, request, backend_, [this, request, response] {
-    auto simulation = restore_simulation(backend_, *request);
+  return answer_later(context, request, backend_, [this, context, request, response] {
+    auto simulation = restore_simulation(backend_, call_of(context).principal, *request);
     if (simulation.ok()) *response = *std::move(simulation);
     return simulation.status();
   });

@@ -27,6 +27,8 @@ struct TimedDeck {
 /// Sends a deck piece by piece, each made once the one before is on its way.
 class DeckStream : public grpc::ServerWriteReactor<v1::ExportTissueDeckResponse> {
  public:
+  explicit DeckStream(grpc::CallbackServerContext* context) : context_(context) {}
+
   void send(TimedDeck deck) {
     deck_.emplace(std::move(deck));
     piece_.set_time_s(deck_->time_s);
@@ -36,6 +38,7 @@ class DeckStream : public grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>
 
   void OnWriteDone(bool ok) override {
     if (!ok) return fail(absl::CancelledError("the client has gone"));
+    if (const absl::Status known = check_still_known(context_); !known.ok()) return fail(known);
     send_next();
   }
   void OnDone() override { delete this; }
@@ -51,6 +54,7 @@ class DeckStream : public grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>
     StartWrite(&piece_);
   }
 
+  grpc::CallbackServerContext* const context_;
   std::optional<TimedDeck> deck_;
   v1::ExportTissueDeckResponse piece_;
 };
@@ -99,7 +103,7 @@ absl::StatusOr<TimedDeck> make_deck(Backend& backend, const std::string& id) {
 grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* export_tissue_deck(Backend& backend,
                                                                            grpc::CallbackServerContext* context,
                                                                            const v1::ExportTissueDeckRequest& request) {
-  auto* stream = new DeckStream;
+  auto* stream = new DeckStream(context);
   absl::Status valid = check_call(context, request);
   const auto id = parse_simulation_name(request.name(), "name");
   valid.Update(id.status());

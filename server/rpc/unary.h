@@ -11,8 +11,10 @@
 #include "absl/status/status.h"
 #include "server/rpc/backend.h"
 #include "server/rpc/call.h"
+#include "server/rpc/call_gate.h"
 #include "server/rpc/message_check.h"
 #include "server/rpc/status_mapping.h"
+#include "server/security/refusals.h"
 
 namespace lipofill::server {
 
@@ -28,12 +30,20 @@ absl::Status guarded(Work&& work) {
   }
 }
 
-/// Whether a call is to be carried out with this request: admitted, and a message this schema knows. Every method
-/// begins with it.
+/// Whether a call is to be carried out with this request: admitted, a message this schema knows, and about nothing that
+/// is not the caller's. Every method begins with it.
 template <typename Request>
 absl::Status check_call(grpc::CallbackServerContext* context, const Request& request) {
-  const absl::Status& refusal = call_of(context).refusal;
-  return refusal.ok() ? check_message(request) : refusal;
+  Call& call = call_of(context);
+  if (call.gate == nullptr) return call.refusal;
+  if (const absl::Status admitted = call.gate->check_admitted(call, request); !admitted.ok()) return admitted;
+  if (const absl::Status known = check_message(request); !known.ok()) return known;
+  return call.gate->check(call, request);
+}
+
+/// Of what goes on for a while: UNAUTHENTICATED once the caller's token has expired.
+inline absl::Status check_still_known(grpc::CallbackServerContext* context) {
+  return call_of(context).principal.has_expired() ? token_expired() : absl::OkStatus();
 }
 
 /// Answers a call at once. `work` fills the response and returns a status.

@@ -1,9 +1,11 @@
 #include "server/rpc/watch_stream.h"
 
+#include <algorithm>
 #include <array>
 #include <exception>
 
 #include "server/rpc/status_mapping.h"
+#include "server/security/refusals.h"
 
 namespace lipofill::server {
 namespace {
@@ -84,6 +86,9 @@ void WatchStream::advance(std::unique_lock<std::mutex> lock) {
   if (cancelled_) {
     end_ = absl::CancelledError("the viewer has gone");
     outgoing_.clear();
+  } else if (!end_ && Courier::Clock::now() >= expires_) {
+    end_ = token_expired();
+    outgoing_.clear();
   } else if (outgoing_.empty() && !end_) {
     try {
       fetch();
@@ -123,14 +128,14 @@ void WatchStream::fetch() {
   }
 }
 
-/// Where it is not due yet, the courier looks again when it will be.
+/// Where it is not due yet, the courier looks again when it will be, or when the stream must end.
 void WatchStream::queue_due_heartbeat() {
   if (viewer_ == nullptr) return;
   const Courier::Clock::time_point due = last_sent_ + heartbeat_;
   if (Courier::Clock::now() < due) {
     if (alarm_) return;
-    alarm_ = due;
-    courier_.wake_at(weak_from_this(), due);
+    alarm_ = std::min(due, expires_);
+    courier_.wake_at(weak_from_this(), *alarm_);
     return;
   }
   v1::WatchResponse response;

@@ -35,6 +35,9 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
         known_topology_hash_(std::move(known_topology_hash)),
         place_(std::move(place)) {}
 
+  /// Before it begins: it ends with UNAUTHENTICATED at this time.
+  void end_at(Courier::Clock::time_point time) { expires_ = time; }
+
   /// A stream that shows what a session puts into the viewer, and a heartbeat where that was nothing for so long.
   /// `on_done` is called once, at the end.
   void begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat, std::function<void()> on_done);
@@ -69,6 +72,7 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   std::shared_ptr<Viewer> viewer_;
   Courier::Clock::duration heartbeat_{};
   Courier::Clock::time_point last_sent_{};
+  Courier::Clock::time_point expires_ = Courier::Clock::time_point::max();
   std::optional<Courier::Clock::time_point> alarm_;  ///< when it is woken to send a heartbeat
   uint64_t sent_epoch_ = 0;
   uint64_t sent_sequence_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
 #include "server/sessions/draining.h"
 #include "server/sessions/identifiers.h"
 #include "server/sessions/thread_name.h"
@@ -11,6 +12,11 @@ namespace lipofill::server {
 namespace {
 
 constexpr size_t kMaxDone = 1000;
+constexpr char kPatients[] = "patients/";
+
+bool has(const Scope& scope, const OperationView& view) {
+  return scope.has(view.tenant, std::string(absl::StripPrefix(view.target, kPatients)));
+}
 
 absl::Status no_operation(const std::string& id) {
   return absl::NotFoundError(
@@ -29,7 +35,8 @@ Operations::~Operations() {
 Operations::Entry* Operations::find_request(const RequestKey& request) {
   if (request.id.empty()) return nullptr;
   const auto found = std::find_if(entries_.begin(), entries_.end(), [&request](const auto& entry) {
-    return entry.second.request.method == request.method && entry.second.request.id == request.id;
+    const RequestKey& known = entry.second.request;
+    return known.tenant == request.tenant && known.method == request.method && known.id == request.id;
   });
   return found == entries_.end() ? nullptr : &found->second;
 }
@@ -38,6 +45,7 @@ Operations::Entry& Operations::add(const std::string& target, const RequestKey& 
   OperationView view;
   view.id = make_id('o');
   view.target = target;
+  view.tenant = request.tenant;
   view.stage = "waiting";
   view.create_time_us = now_us();
   return entries_[view.id] = Entry{view, request, false};
@@ -117,12 +125,17 @@ absl::StatusOr<OperationView> Operations::get(const std::string& id) const {
   return found->second.view;
 }
 
-std::vector<OperationView> Operations::list(const Page& page) const {
+absl::StatusOr<OperationView> Operations::get(const std::string& id, const Scope& scope) const {
+  auto view = get(id);
+  return view.ok() && !has(scope, *view) ? no_operation(id) : view;
+}
+
+std::vector<OperationView> Operations::list(const Scope& scope, const Page& page) const {
   const std::lock_guard lock(mutex_);
   std::vector<OperationView> views;
   for (auto entry = entries_.upper_bound(page.after); entry != entries_.end(); ++entry) {
     if (static_cast<int>(views.size()) == page.size) break;
-    views.push_back(entry->second.view);
+    if (has(scope, entry->second.view)) views.push_back(entry->second.view);
   }
   return views;
 }

@@ -20,6 +20,7 @@ namespace lipofill::server {
 struct OperationView {
   std::string id;
   std::string target;
+  std::string tenant;
   bool done = false;
   double progress = 0.0;
   std::string stage;
@@ -54,7 +55,10 @@ class Operations {
   void drop(const std::string& id);
 
   absl::StatusOr<OperationView> get(const std::string& id) const;
-  std::vector<OperationView> list(const Page& page) const;
+  /// The same where the scope has it; else as if there were none.
+  absl::StatusOr<OperationView> get(const std::string& id, const Scope& scope) const;
+  /// Of what the scope has.
+  std::vector<OperationView> list(const Scope& scope, const Page& page) const;
   /// The reply comes when it is done, its progress is not `seen_progress`, or the timeout has passed. On any thread.
   void wait(const std::string& id, std::chrono::milliseconds timeout, std::optional<double> seen_progress, Reply reply);
   absl::Status cancel(const std::string& id);

@@ -4,6 +4,8 @@
 #include <map>
 #include <string>
 
+#include "server/store/scope.h"
+
 namespace lipofill::server {
 
 /// What the store keeps, as plain values. Fields called *_message hold serialised messages of the wire schema that the
@@ -14,6 +16,7 @@ struct PatientRecord {
   std::string display_name;
   std::map<std::string, std::string> labels;
   int64_t create_time_us = 0;
+  std::string tenant = kLocalTenant;
 };
 
 struct ScanRecord {
@@ -62,6 +65,7 @@ struct SimulationRecord {
   int64_t create_time_us = 0;
   std::string origin = {};    ///< simulations/{simulation}/checkpoints/{checkpoint} it began from; empty: from its plan
   uint64_t last_command = 0;  ///< number of the last command it took; given by the store
+  std::string tenant = kLocalTenant;
 };
 
 /// A client's command. Those that set the state are told by it: start and resume RUNNING, pause PAUSED.
@@ -110,12 +114,13 @@ struct SeriesChunk {
   std::string rows_message;
 };
 
-/// Makes a create idempotent: the same method and id again give the resource made the first time. Empty id: no such
-/// promise.
+/// Makes a create idempotent: the same method and id again, by the same tenant, give the resource made the first time.
+/// Empty id: no such promise.
 struct RequestKey {
   std::string method;
   std::string id;
   std::string fingerprint;  ///< of the whole request: the same id with another request is a mistake of the caller
+  std::string tenant = kLocalTenant;
 };
 
 /// The `size` records that follow `after` in ascending order of their ids.

@@ -14,7 +14,8 @@ constexpr int kApplicationId = 0x4c69706f;  // "Lipo"
 /// changes below bring them.
 constexpr char kSchema[] = R"(
 CREATE TABLE patients (
-  id BLOB PRIMARY KEY, display_name BLOB NOT NULL, create_time_us INTEGER NOT NULL) WITHOUT ROWID;
+  id BLOB PRIMARY KEY, display_name BLOB NOT NULL, create_time_us INTEGER NOT NULL,
+  tenant BLOB NOT NULL DEFAULT x'6c6f63616c') WITHOUT ROWID;
 CREATE TABLE patient_labels (
   patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, key BLOB NOT NULL, value BLOB NOT NULL,
   PRIMARY KEY (patient, key)) WITHOUT ROWID;
@@ -29,15 +30,15 @@ CREATE TABLE models (
 CREATE TABLE simulations (
   id BLOB PRIMARY KEY, model BLOB NOT NULL, display_name BLOB NOT NULL, spec BLOB NOT NULL, state INTEGER NOT NULL,
   reason BLOB NOT NULL, summary BLOB NOT NULL, create_time_us INTEGER NOT NULL, epoch INTEGER NOT NULL DEFAULT 0,
-  origin BLOB NOT NULL DEFAULT x'');
+  origin BLOB NOT NULL DEFAULT x'', tenant BLOB NOT NULL DEFAULT x'6c6f63616c');
 CREATE TABLE simulation_results (
   simulation BLOB PRIMARY KEY REFERENCES simulations(id) ON DELETE CASCADE, meshes BLOB NOT NULL, frame BLOB NOT NULL);
 CREATE TABLE simulation_series (
   simulation BLOB NOT NULL REFERENCES simulations(id) ON DELETE CASCADE, first_step INTEGER NOT NULL,
   last_step INTEGER NOT NULL, rows BLOB NOT NULL, PRIMARY KEY (simulation, last_step));
 CREATE TABLE requests (
-  method BLOB NOT NULL, id BLOB NOT NULL, fingerprint BLOB NOT NULL, name BLOB NOT NULL,
-  PRIMARY KEY (method, id)) WITHOUT ROWID;
+  tenant BLOB NOT NULL, method BLOB NOT NULL, id BLOB NOT NULL, fingerprint BLOB NOT NULL, name BLOB NOT NULL,
+  PRIMARY KEY (tenant, method, id)) WITHOUT ROWID;
 CREATE INDEX requests_by_name ON requests(name);
 )";
 
@@ -62,6 +63,24 @@ constexpr char kFromVersion2[] = R"(
 ALTER TABLE simulations ADD COLUMN epoch INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE simulations ADD COLUMN origin BLOB NOT NULL DEFAULT x'';
 UPDATE simulations SET state = 7, reason = CAST('the daemon stopped' AS BLOB) WHERE state < 4;
+)";
+
+/// 4: patients, simulations and requests belong to a tenant. What there was belongs to "local".
+constexpr char kFromVersion3[] = R"(
+ALTER TABLE patients ADD COLUMN tenant BLOB NOT NULL DEFAULT x'6c6f63616c';
+ALTER TABLE simulations ADD COLUMN tenant BLOB NOT NULL DEFAULT x'6c6f63616c';
+CREATE TABLE requests_of_tenants (
+  tenant BLOB NOT NULL, method BLOB NOT NULL, id BLOB NOT NULL, fingerprint BLOB NOT NULL, name BLOB NOT NULL,
+  PRIMARY KEY (tenant, method, id)) WITHOUT ROWID;
+INSERT INTO requests_of_tenants SELECT x'6c6f63616c', method, id, fingerprint, name FROM requests;
+DROP TABLE requests;
+ALTER TABLE requests_of_tenants RENAME TO requests;
+CREATE INDEX requests_by_name ON requests(name);
+)";
+
+constexpr char kTenantIndexes[] = R"(
+CREATE INDEX patients_by_tenant ON patients(tenant, id);
+CREATE INDEX simulations_by_tenant ON simulations(tenant, id);
 )";
 
 absl::StatusOr<int64_t> read_pragma(Database& database, const char* sql) {
@@ -106,7 +125,8 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   if (!version.ok()) return version.status();
   const auto tables = read_pragma(database, "SELECT count(*) FROM sqlite_master");
   if (!tables.ok()) return tables.status();
-  if (*version == 0 && *tables == 0) return change_schema(database, absl::StrCat(kSchema, kResumeTables));
+  if (*version == 0 && *tables == 0)
+    return change_schema(database, absl::StrCat(kSchema, kResumeTables, kTenantIndexes));
   const auto application = read_pragma(database, "PRAGMA application_id");
   if (!application.ok()) return application.status();
   if (*application != kApplicationId) {
@@ -119,6 +139,7 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   std::string changes;
   if (*version < 2) changes += kFromVersion1;
   if (*version < 3) absl::StrAppend(&changes, kFromVersion2, kResumeTables);
+  if (*version < 4) absl::StrAppend(&changes, kFromVersion3, kTenantIndexes);
   return changes.empty() ? absl::OkStatus() : change_schema(database, changes);
 }
 

@@ -8,7 +8,7 @@
 namespace lipofill::server {
 
 /// Version of the schema that this program writes, PRAGMA user_version.
-inline constexpr int kSchemaVersion = 3;
+inline constexpr int kSchemaVersion = 4;
 
 /// DATA_LOSS saying what is wrong and what can be done when the pages of the database do not fit together.
 /// Checked by tests/unit/server/schema_test.cc and tests/integration/service/fault_test.cc.

@@ -1,7 +1,15 @@
 #include "absl/strings/str_cat.h"
+#include "server/store/scope_query.h"
 #include "server/store/sqlite_store.h"
 
 namespace lipofill::server {
+namespace {
+
+absl::Status no_patient(const std::string& id) {
+  return absl::NotFoundError(absl::StrCat("there is no ", patient_name(id)));
+}
+
+}  // namespace
 
 absl::StatusOr<PatientRecord> SqliteStore::create_patient(const PatientRecord& patient, const RequestKey& request) {
   const std::lock_guard lock(mutex_);
@@ -10,8 +18,8 @@ absl::StatusOr<PatientRecord> SqliteStore::create_patient(const PatientRecord& p
   const auto made = read_request(request);
   if (!made.ok()) return made.status();
   if (made->has_value()) return read_patient((**made).substr(patient_name("").size()));
-  Query insert(*database_, "INSERT INTO patients VALUES (?, ?, ?)");
-  auto done = insert.bind(patient.id, patient.display_name, patient.create_time_us).run();
+  Query insert(*database_, "INSERT INTO patients (id, display_name, create_time_us, tenant) VALUES (?, ?, ?, ?)");
+  auto done = insert.bind(patient.id, patient.display_name, patient.create_time_us, patient.tenant).run();
   if (absl::IsAlreadyExists(done)) {
     return absl::AlreadyExistsError(absl::StrCat(patient_name(patient.id), " exists"));
   }
@@ -38,12 +46,12 @@ absl::StatusOr<PatientRecord> SqliteStore::get_patient(const std::string& id) {
 }
 
 absl::StatusOr<PatientRecord> SqliteStore::read_patient(const std::string& id) {
-  Query query(*database_, "SELECT display_name, create_time_us FROM patients WHERE id = ?");
+  Query query(*database_, "SELECT display_name, create_time_us, tenant FROM patients WHERE id = ?");
   if (!query.bind(id).next()) {
     if (!query.status().ok()) return query.status();
-    return absl::NotFoundError(absl::StrCat("there is no ", patient_name(id)));
+    return no_patient(id);
   }
-  PatientRecord patient{id, query.text(0), {}, query.integer(1)};
+  PatientRecord patient{id, query.text(0), {}, query.integer(1), query.text(2)};
   Query labels(*database_, "SELECT key, value FROM patient_labels WHERE patient = ?");
   labels.bind(id);
   while (labels.next()) patient.labels[labels.text(0)] = labels.text(1);
@@ -51,11 +59,13 @@ absl::StatusOr<PatientRecord> SqliteStore::read_patient(const std::string& id) {
   return patient;
 }
 
-absl::StatusOr<std::vector<PatientRecord>> SqliteStore::list_patients(const Page& page) {
+absl::StatusOr<std::vector<PatientRecord>> SqliteStore::list_patients(const Scope& scope, const Page& page) {
   const std::lock_guard lock(mutex_);
   std::vector<std::string> ids;
-  Query query(*database_, "SELECT id FROM patients WHERE id > ? ORDER BY id LIMIT ?");
-  query.bind(page.after, page.size);
+  Query query(*database_,
+              "SELECT id FROM patients WHERE tenant = ?1 AND id > ?2 "
+              "AND (?3 OR id IN (SELECT CAST(value AS BLOB) FROM json_each(CAST(?4 AS TEXT)))) ORDER BY id LIMIT ?5");
+  query.bind(scope.tenant, page.after, !scope.patients, json_of(scope), page.size);
   while (query.next()) ids.push_back(query.text(0));
   if (!query.status().ok()) return query.status();
   std::vector<PatientRecord> patients;
@@ -65,6 +75,13 @@ absl::StatusOr<std::vector<PatientRecord>> SqliteStore::list_patients(const Page
     patients.push_back(*std::move(patient));
   }
   return patients;
+}
+
+absl::StatusOr<Owner> SqliteStore::owner_of_patient(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  Query query(*database_, "SELECT tenant FROM patients WHERE id = ?");
+  if (query.bind(id).next()) return Owner{query.text(0), id};
+  return query.status().ok() ? no_patient(id) : query.status();
 }
 
 absl::StatusOr<PatientRecord> SqliteStore::update_patient(const std::string& id, const PatientChange& change) {

@@ -1,11 +1,14 @@
 #include "absl/strings/str_cat.h"
+#include "server/store/scope_query.h"
 #include "server/store/sqlite_store.h"
 
 namespace lipofill::server {
 namespace {
 
-#define SIMULATION_COLUMNS "id, model, display_name, spec, state, reason, summary, create_time_us, origin"
+#define SIMULATION_COLUMNS "id, model, display_name, spec, state, reason, summary, create_time_us, origin, tenant"
 #define LAST_COMMAND "(SELECT coalesce(max(number), 0) FROM simulation_commands WHERE simulation = id)"
+/// The id in "patients/{patient}/models/{model}".
+#define PATIENT_OF_MODEL "substr(model, 10, instr(substr(model, 10), x'2f') - 1)"
 
 SimulationRecord simulation_of(const Query& row) {
   SimulationRecord simulation;
@@ -18,7 +21,8 @@ SimulationRecord simulation_of(const Query& row) {
   simulation.summary_message = row.text(6);
   simulation.create_time_us = row.integer(7);
   simulation.origin = row.text(8);
-  simulation.last_command = row.unsigned_integer(9);
+  simulation.tenant = row.text(9);
+  simulation.last_command = row.unsigned_integer(10);
   return simulation;
 }
 
@@ -61,11 +65,11 @@ absl::StatusOr<SimulationRecord> SqliteStore::create_simulation_from(const Simul
 }
 
 absl::Status SqliteStore::write_simulation(const SimulationRecord& simulation) {
-  Query insert(*database_, "INSERT INTO simulations (" SIMULATION_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  Query insert(*database_, "INSERT INTO simulations (" SIMULATION_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const absl::Status done = insert
                                 .bind(simulation.id, simulation.model, simulation.display_name, simulation.spec_message,
                                       static_cast<int>(simulation.state), simulation.reason, simulation.summary_message,
-                                      simulation.create_time_us, simulation.origin)
+                                      simulation.create_time_us, simulation.origin, simulation.tenant)
                                 .run();
   if (!absl::IsAlreadyExists(done)) return done;
   return absl::AlreadyExistsError(absl::StrCat(simulation_name(simulation.id), " exists"));
@@ -83,11 +87,19 @@ absl::StatusOr<SimulationRecord> SqliteStore::read_simulation(const std::string&
   return no_simulation(id);
 }
 
-absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_simulations(const Page& page) {
+absl::StatusOr<Owner> SqliteStore::owner_of_simulation(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  Query query(*database_,
-              "SELECT " SIMULATION_COLUMNS ", " LAST_COMMAND " FROM simulations WHERE id > ? ORDER BY id LIMIT ?");
-  query.bind(page.after, page.size);
+  Query query(*database_, "SELECT tenant, " PATIENT_OF_MODEL " FROM simulations WHERE id = ?");
+  if (query.bind(id).next()) return Owner{query.text(0), query.text(1)};
+  return query.status().ok() ? no_simulation(id) : query.status();
+}
+
+absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_simulations(const Scope& scope, const Page& page) {
+  const std::lock_guard lock(mutex_);
+  Query query(*database_, "SELECT " SIMULATION_COLUMNS ", " LAST_COMMAND
+                          " FROM simulations WHERE tenant = ?1 AND id > ?2 AND (?3 OR " PATIENT_OF_MODEL
+                          " IN (SELECT CAST(value AS BLOB) FROM json_each(CAST(?4 AS TEXT)))) ORDER BY id LIMIT ?5");
+  query.bind(scope.tenant, page.after, !scope.patients, json_of(scope), page.size);
   std::vector<SimulationRecord> simulations;
   while (query.next()) simulations.push_back(simulation_of(query));
   if (!query.status().ok()) return query.status();

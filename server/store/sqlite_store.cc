@@ -24,8 +24,8 @@ absl::StatusOr<std::optional<std::string>> SqliteStore::find_request(const Reque
 
 absl::StatusOr<std::optional<std::string>> SqliteStore::read_request(const RequestKey& request) {
   if (request.id.empty()) return std::nullopt;
-  Query query(*database_, "SELECT fingerprint, name FROM requests WHERE method = ? AND id = ?");
-  query.bind(request.method, request.id);
+  Query query(*database_, "SELECT fingerprint, name FROM requests WHERE tenant = ? AND method = ? AND id = ?");
+  query.bind(request.tenant, request.method, request.id);
   if (!query.next()) {
     if (!query.status().ok()) return query.status();
     return std::nullopt;
@@ -39,8 +39,8 @@ absl::StatusOr<std::optional<std::string>> SqliteStore::read_request(const Reque
 
 absl::Status SqliteStore::write_request(const RequestKey& request, const std::string& name) {
   if (request.id.empty()) return absl::OkStatus();
-  Query query(*database_, "INSERT INTO requests VALUES (?, ?, ?, ?)");
-  return query.bind(request.method, request.id, request.fingerprint, name).run();
+  Query query(*database_, "INSERT INTO requests VALUES (?, ?, ?, ?, ?)");
+  return query.bind(request.tenant, request.method, request.id, request.fingerprint, name).run();
 }
 
 absl::Status SqliteStore::forget_requests(const std::string& name) {

@@ -19,7 +19,7 @@ class SqliteStore : public Store {
 
   absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) override;
   absl::StatusOr<PatientRecord> get_patient(const std::string& id) override;
-  absl::StatusOr<std::vector<PatientRecord>> list_patients(const Page& page) override;
+  absl::StatusOr<std::vector<PatientRecord>> list_patients(const Scope& scope, const Page& page) override;
   absl::StatusOr<PatientRecord> update_patient(const std::string& id, const PatientChange& change) override;
   absl::Status delete_patient(const std::string& id, bool force, const PatientCheck& check = nullptr) override;
 
@@ -39,7 +39,7 @@ class SqliteStore : public Store {
   absl::StatusOr<SimulationRecord> create_simulation(const SimulationRecord& simulation,
                                                      const RequestKey& request) override;
   absl::StatusOr<SimulationRecord> get_simulation(const std::string& id) override;
-  absl::StatusOr<std::vector<SimulationRecord>> list_simulations(const Page& page) override;
+  absl::StatusOr<std::vector<SimulationRecord>> list_simulations(const Scope& scope, const Page& page) override;
   absl::Status end_simulation(const SimulationRecord& ended, const SimulationResult& result) override;
   absl::Status set_simulation_state(const std::string& id, SimulationState state, const std::string& reason) override;
   absl::Status append_series(const std::string& id, const SeriesChunk& chunk) override;
@@ -69,6 +69,9 @@ class SqliteStore : public Store {
   absl::StatusOr<bool> restore_simulation(const CommandRecord& restore, SimulationState state,
                                           const std::string& spec_message, const RequestKey& request) override;
   absl::Status cut_series(const std::string& id, uint64_t last_step) override;
+
+  absl::StatusOr<Owner> owner_of_patient(const std::string& id) override;
+  absl::StatusOr<Owner> owner_of_simulation(const std::string& id) override;
 
   absl::StatusOr<std::optional<std::string>> find_request(const RequestKey& request) override;
 

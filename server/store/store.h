@@ -24,7 +24,8 @@ class Store {
   /// Creates return the record now in the store: the one given, or the one an equal request made before.
   virtual absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) = 0;
   virtual absl::StatusOr<PatientRecord> get_patient(const std::string& id) = 0;
-  virtual absl::StatusOr<std::vector<PatientRecord>> list_patients(const Page& page) = 0;
+  /// Of what the scope has.
+  virtual absl::StatusOr<std::vector<PatientRecord>> list_patients(const Scope& scope, const Page& page) = 0;
   /// Replaces display name and labels by what `change` makes of the present record; nobody comes between. What `change`
   /// refuses is not done.
   using PatientChange = std::function<absl::StatusOr<PatientRecord>(const PatientRecord& present)>;
@@ -52,7 +53,7 @@ class Store {
   virtual absl::StatusOr<SimulationRecord> create_simulation(const SimulationRecord& simulation,
                                                              const RequestKey& request) = 0;
   virtual absl::StatusOr<SimulationRecord> get_simulation(const std::string& id) = 0;
-  virtual absl::StatusOr<std::vector<SimulationRecord>> list_simulations(const Page& page) = 0;
+  virtual absl::StatusOr<std::vector<SimulationRecord>> list_simulations(const Scope& scope, const Page& page) = 0;
   /// State, reason, summary and result in one go; automatic checkpoints go.
   virtual absl::Status end_simulation(const SimulationRecord& ended, const SimulationResult& result) = 0;
   /// State and reason alone, without a result.
@@ -101,6 +102,10 @@ class Store {
                                                   const std::string& spec_message, const RequestKey& request) = 0;
   /// Forgets rows of the series after a step.
   virtual absl::Status cut_series(const std::string& id, uint64_t last_step) = 0;
+
+  /// Whose something is; of a simulation the patient of its model, which may have been deleted since.
+  virtual absl::StatusOr<Owner> owner_of_patient(const std::string& id) = 0;
+  virtual absl::StatusOr<Owner> owner_of_simulation(const std::string& id) = 0;
 
   /// The name an earlier, equal request made, if any.
   virtual absl::StatusOr<std::optional<std::string>> find_request(const RequestKey& request) = 0;

@@ -53,7 +53,7 @@ void check_files(const std::string& data) {
   }),
             0)
       << "files of scans that are in no record, or not whole";
-  const auto simulations = (*store)->list_simulations({"", 100'000});
+  const auto simulations = (*store)->list_simulations({}, {"", 100'000});
   ASSERT_TRUE(simulations.ok());
   for (const server::SimulationRecord& simulation : *simulations) {
     const auto kept = (*store)->list_checkpoints(simulation.id, {"", 1000});

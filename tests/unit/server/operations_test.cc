@@ -82,7 +82,7 @@ TEST(Operations, RemembersABoundedNumber) {
   Operations operations;
   const std::string running = operations.start("t", {})->operation.id;
   for (int i = 0; i < 1100; ++i) operations.add_done("t", {}, "r");
-  EXPECT_EQ(operations.list({"", 5000}).size(), 1001u);
+  EXPECT_EQ(operations.list({}, {"", 5000}).size(), 1001u);
   EXPECT_TRUE(operations.get(running).ok());
 }
 

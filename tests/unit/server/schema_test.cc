@@ -59,13 +59,29 @@ CREATE TABLE models (
 PRAGMA user_version = 2;
 )";
 
+/// Version 3 logs commands and has checkpoints.
+constexpr char kVersion3[] = R"(
+ALTER TABLE simulations ADD COLUMN epoch INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE simulations ADD COLUMN origin BLOB NOT NULL DEFAULT x'';
+CREATE TABLE simulation_commands (
+  simulation BLOB NOT NULL REFERENCES simulations(id) ON DELETE CASCADE, number INTEGER NOT NULL,
+  kind INTEGER NOT NULL, step INTEGER NOT NULL, payload BLOB NOT NULL, on_course INTEGER NOT NULL,
+  create_time_us INTEGER NOT NULL, PRIMARY KEY (simulation, number)) WITHOUT ROWID;
+CREATE TABLE checkpoints (
+  simulation BLOB NOT NULL REFERENCES simulations(id) ON DELETE CASCADE, id BLOB NOT NULL, kind INTEGER NOT NULL,
+  on_course INTEGER NOT NULL, step INTEGER NOT NULL, time_s REAL NOT NULL, wall_s REAL NOT NULL,
+  last_command INTEGER NOT NULL, size_bytes INTEGER NOT NULL, sha256 BLOB NOT NULL, state_hash BLOB NOT NULL,
+  create_time_us INTEGER NOT NULL, PRIMARY KEY (simulation, id));
+PRAGMA user_version = 3;
+)";
+
 constexpr char kContent[] = R"(
 INSERT INTO patients VALUES (x'61', x'6e616d65', 1);
 INSERT INTO patient_labels VALUES (x'61', x'6b', x'76');
 INSERT INTO scans VALUES (x'61', x'73', 2, 1, 5000000000, x'6162', 12, 0, x'', 2);
 INSERT INTO models (patient, id, scan, content_hash, spec, report, create_time_us)
   VALUES (x'61', x'6d', x'73', x'68617368', x'00ff', x'72', 3);
-INSERT INTO simulations VALUES (x'72', x'6d', x'', x'70', 1, x'', x'', 4), (x'73', x'6d', x'', x'70', 4, x'', x'75', 5);
+INSERT INTO simulations (id, model, display_name, spec, state, reason, summary, create_time_us) VALUES (x'72', x'6d', x'', x'70', 1, x'', x'', 4), (x'73', x'6d', x'', x'70', 4, x'', x'75', 5);
 INSERT INTO simulation_results VALUES (x'73', x'6d', x'66');
 INSERT INTO simulation_series VALUES (x'73', 1, 500, x'77');
 INSERT INTO requests VALUES (x'43', x'31', x'66', x'70');
@@ -94,7 +110,8 @@ class SchemaTest : public ::testing::TestWithParam<int> {
     const auto database = Database::open(path_);
     ASSERT_TRUE(database.ok());
     ASSERT_TRUE((*database)->execute(kVersion1).ok());
-    ASSERT_TRUE((*database)->execute(version == 2 ? kVersion2 : "").ok());
+    ASSERT_TRUE((*database)->execute(version >= 2 ? kVersion2 : "").ok());
+    ASSERT_TRUE((*database)->execute(version >= 3 ? kVersion3 : "").ok());
     ASSERT_TRUE((*database)->execute(kContent).ok());
   }
   lipofill::testing::TemporaryDirectory directory_;
@@ -118,9 +135,20 @@ TEST_P(SchemaTest, IsBroughtUpToDateWithAllItHeld) {
     EXPECT_EQ((*store)->get_result("s")->frame_message, "f");
     EXPECT_EQ((**(*store)->next_series_chunk("s", 0)).rows_message, "w");
     EXPECT_EQ(**(*store)->find_request({"C", "1", "f"}), "p");
-    EXPECT_EQ((*store)->get_simulation("r")->state, SimulationState::kFailed) << "it was lost with its daemon";
-    EXPECT_EQ((*store)->get_simulation("r")->reason, "the daemon stopped");
-    EXPECT_TRUE((*store)->list_unended_simulations()->empty());
+    const auto unended = (*store)->list_unended_simulations();
+    ASSERT_TRUE(unended.ok()) << unended.status();
+    if (GetParam() < 3) {
+      EXPECT_EQ((*store)->get_simulation("r")->state, SimulationState::kFailed) << "it was lost with its daemon";
+      EXPECT_EQ((*store)->get_simulation("r")->reason, "the daemon stopped");
+      EXPECT_TRUE(unended->empty());
+    } else {
+      ASSERT_EQ(unended->size(), 1u);
+      EXPECT_EQ(unended->front().id, "r");
+    }
+    EXPECT_EQ((*store)->owner_of_patient("a")->tenant, "local") << "what there was is the machine's own user's";
+    EXPECT_EQ((*store)->owner_of_simulation("s")->tenant, "local");
+    EXPECT_EQ((*store)->list_patients({}, {"", 10})->size(), 1u);
+    EXPECT_TRUE((*store)->list_patients({"other"}, {"", 10})->empty());
   }
 }
 
@@ -133,8 +161,8 @@ TEST_P(SchemaTest, EndsInTheShapeOfANewOne) {
 
 TEST_P(SchemaTest, StaysAsItIsWhenTheChangeFails) {
   make(GetParam());
-  // The last of the changes finds its table there already.
-  ASSERT_TRUE((*Database::open(path_))->execute("CREATE TABLE checkpoints (x)").ok());
+  // The last of the changes finds its name taken.
+  ASSERT_TRUE((*Database::open(path_))->execute("CREATE TABLE simulations_by_tenant (x)").ok());
   const std::set<std::string> before = shape_of(path_);
   EXPECT_FALSE(SqliteStore::open(path_).ok());
   EXPECT_EQ(shape_of(path_), before);

@@ -92,10 +92,48 @@ TEST_F(StoreTest, RefusesASecondPatientOfTheSameId) {
 TEST_F(StoreTest, ListsInPages) {
   for (const char* id : {"c", "a", "b", "d"}) add_patient(id);
   std::vector<std::string> ids;
-  const auto patients = store_->list_patients({"a", 2});
+  const auto patients = store_->list_patients({}, {"a", 2});
   ASSERT_TRUE(patients.ok());
   for (const auto& patient : *patients) ids.push_back(patient.id);
   EXPECT_THAT(ids, ElementsAre("b", "c"));
+}
+
+TEST_F(StoreTest, ListsWhatAScopeHas) {
+  ASSERT_TRUE(store_->create_patient({"a", "", {}, 1, "ward"}, {}).ok());
+  ASSERT_TRUE(store_->create_patient({"b", "", {}, 1, "ward"}, {}).ok());
+  ASSERT_TRUE(store_->create_patient({"c", "", {}, 1, "clinic"}, {}).ok());
+  for (const char* patient : {"a", "b", "c"}) {
+    SimulationRecord record = simulation(absl::StrCat("of-", patient));
+    record.model = absl::StrCat("patients/", patient, "/models/m");
+    record.tenant = patient == std::string("c") ? "clinic" : "ward";
+    ASSERT_TRUE(store_->create_simulation(record, {}).ok());
+  }
+  const auto ids = [this](const Scope& scope) {
+    std::vector<std::string> found;
+    for (const auto& patient : *store_->list_patients(scope, {"", 10})) found.push_back(patient.id);
+    for (const auto& one : *store_->list_simulations(scope, {"", 10})) found.push_back(one.id);
+    return found;
+  };
+  EXPECT_THAT(ids({}), ElementsAre());
+  EXPECT_THAT(ids({"ward"}), ElementsAre("a", "b", "of-a", "of-b"));
+  EXPECT_THAT(ids({"clinic"}), ElementsAre("c", "of-c"));
+  EXPECT_THAT(ids({"ward", {{"b", "c", "nobody"}}}), ElementsAre("b", "of-b"));
+  EXPECT_THAT(ids({"ward", std::set<std::string>{}}), ElementsAre());
+  EXPECT_EQ(store_->owner_of_simulation("of-c")->tenant, "clinic");
+  EXPECT_EQ(store_->owner_of_simulation("of-c")->patient, "c");
+  EXPECT_EQ(store_->get_simulation("of-c")->tenant, "clinic");
+  EXPECT_TRUE(absl::IsNotFound(store_->owner_of_patient("x").status()));
+  EXPECT_TRUE(absl::IsNotFound(store_->owner_of_simulation("x").status()));
+}
+
+TEST_F(StoreTest, ARequestIdIsATenantsOwn) {
+  const RequestKey ours{"CreatePatient", "r1", "f1", "ward"};
+  const RequestKey theirs{"CreatePatient", "r1", "f1", "clinic"};
+  ASSERT_TRUE(store_->create_patient({"a", "", {}, 1, "ward"}, ours).ok());
+  const auto made = store_->create_patient({"b", "", {}, 1, "clinic"}, theirs);
+  ASSERT_TRUE(made.ok()) << made.status();
+  EXPECT_EQ(made->id, "b");
+  EXPECT_EQ(**store_->find_request(ours), "patients/a");
 }
 
 TEST_F(StoreTest, RepeatsARequestOnlyOnce) {
@@ -105,7 +143,7 @@ TEST_F(StoreTest, RepeatsARequestOnlyOnce) {
   const auto again = store_->create_patient({"berta", "second", {}, 2}, key);
   ASSERT_TRUE(again.ok()) << again.status();
   EXPECT_EQ(again->id, "anna");
-  EXPECT_EQ(store_->list_patients({"", 10})->size(), 1u);
+  EXPECT_EQ(store_->list_patients({}, {"", 10})->size(), 1u);
   const auto other = store_->create_patient({"carl", "", {}, 1}, {"CreatePatient", "r1", "f2"});
   EXPECT_TRUE(absl::IsInvalidArgument(other.status())) << other.status();
 }
@@ -241,7 +279,7 @@ TEST_F(StoreTest, ServesManyThreads) {
     });
   }
   for (std::thread& thread : threads) thread.join();
-  EXPECT_EQ(store_->list_patients({"", 1000})->size(), 100u);
+  EXPECT_EQ(store_->list_patients({}, {"", 1000})->size(), 100u);
 }
 
 TEST(StoreOpening, RefusesAFileThatIsNoDatabase) {

@@ -1,0 +1,148 @@
+#include "server/security/audit_log.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "server/security/audit_tail.h"
+#include "spdlog/spdlog.h"
+
+namespace lipofill::server {
+namespace {
+
+absl::Status cannot(const char* what, const std::string& path) {
+  return absl::FailedPreconditionError(absl::StrCat("cannot ", what, " ", path, ": ", std::strerror(errno)));
+}
+
+absl::Status sync_folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::absolute(path).parent_path();
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return cannot("open", folder);
+  const absl::Status synced = ::fsync(descriptor) == 0 ? absl::OkStatus() : cannot("flush", folder);
+  ::close(descriptor);
+  return synced;
+}
+
+}  // namespace
+
+/// A file held by this process alone.
+class AuditLog::File {
+ public:
+  static absl::StatusOr<std::shared_ptr<File>> open(const std::string& path) {
+    const int descriptor = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
+    if (descriptor < 0) return cannot("write", path);
+    auto file = std::make_shared<File>(descriptor, path);
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) return cannot("be the only one to write", path);
+    struct stat found {};
+    if (::fstat(descriptor, &found) != 0) return cannot("look at", path);
+    file->size = static_cast<uint64_t>(found.st_size);
+    if (auto synced = sync_folder_of(path); !synced.ok()) return synced;
+    return file;
+  }
+
+  File(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {}
+  ~File() { ::close(descriptor_); }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  /// The number of bytes that were written, fewer than asked for when the medium is full.
+  size_t write(const std::string& bytes) {
+    size_t written = 0;
+    while (written < bytes.size()) {
+      const ssize_t n = ::write(descriptor_, bytes.data() + written, bytes.size() - written);
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) break;
+      written += static_cast<size_t>(n);
+    }
+    size += written;
+    return written;
+  }
+  absl::Status flush() const { return ::fdatasync(descriptor_) == 0 ? absl::OkStatus() : cannot("flush", path_); }
+
+  uint64_t size = 0;
+
+ private:
+  const int descriptor_;
+  const std::string path_;
+};
+
+absl::StatusOr<std::unique_ptr<AuditLog>> AuditLog::open(const std::string& path, uint64_t rotate_bytes) {
+  std::unique_ptr<AuditLog> log(new AuditLog(path, rotate_bytes));
+  auto file = File::open(path);
+  if (!file.ok()) return file.status();
+  log->file_ = *std::move(file);
+  const auto tail = find_audit_tail(path);
+  if (!tail.ok()) return tail.status();
+  log->head_ = tail->head;
+  log->is_torn_ = tail->is_torn;
+  spdlog::info("the audit log {} goes on after line {}, hash {}", path, log->head_.number, log->head_.hash);
+  return log;
+}
+
+AuditLog::~AuditLog() {
+  const absl::Status flushed = file_ != nullptr ? file_->flush() : absl::OkStatus();
+  if (!flushed.ok()) spdlog::error("{}", std::string(flushed.message()));
+  spdlog::info("the audit log {} ends with line {}, hash {}", path_, head_.number, head_.hash);
+}
+
+absl::Status AuditLog::append(const AuditEntry& entry) {
+  return write(entry).status();
+}
+
+absl::Status AuditLog::append_durably(const AuditEntry& entry) {
+  const auto file = write(entry);
+  return file.ok() ? (*file)->flush() : file.status();
+}
+
+AuditHead AuditLog::head() const {
+  const std::lock_guard lock(mutex_);
+  return head_;
+}
+
+absl::StatusOr<std::shared_ptr<AuditLog::File>> AuditLog::write(const AuditEntry& entry) {
+  const std::lock_guard lock(mutex_);
+  if (file_->size >= rotate_bytes_) {
+    if (auto rotated = rotate(); !rotated.ok()) return rotated;
+  }
+  const std::string line = make_audit_line(entry, head_);
+  const std::string before = is_torn_ ? "\n" : "";
+  const size_t written = file_->write(absl::StrCat(before, line, "\n"));
+  if (written == before.size() + line.size() + 1) {
+    head_ = {head_.number + 1, hash_of_line(line)};
+    is_torn_ = false;
+    return file_;
+  }
+  // What is there stays, and the next line carries on from it.
+  const absl::Status error = cannot("write", path_);
+  if (written > before.size()) {
+    head_.hash = hash_of_line(line.substr(0, written - before.size()));
+    is_torn_ = true;
+  } else if (written > 0) {
+    is_torn_ = false;
+  }
+  return error;
+}
+
+absl::Status AuditLog::rotate() {
+  if (auto flushed = file_->flush(); !flushed.ok()) return flushed;
+  const std::string kept = absl::StrCat(path_, absl::StrFormat(".%012d", head_.number));
+  const bool is_kept = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, kept.c_str(), RENAME_NOREPLACE) == 0;
+  // It was renamed before, and there was no room for a new one then.
+  if (!is_kept && errno != ENOENT) return cannot("rename to keep", kept);
+  auto file = File::open(path_);
+  if (!file.ok()) return file.status();
+  file_ = *std::move(file);
+  is_torn_ = false;
+  spdlog::info("the audit log goes on in a new file after {}, line {}, hash {}", kept, head_.number, head_.hash);
+  return absl::OkStatus();
+}
+
+}  // namespace lipofill::server

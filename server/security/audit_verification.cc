@@ -1,0 +1,64 @@
+#include <fstream>
+
+#include "absl/strings/str_cat.h"
+#include "server/security/audit_log.h"
+
+namespace lipofill::server {
+namespace {
+
+/// Follows the chain through one line after the other.
+class AuditReader {
+ public:
+  absl::Status read(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return absl::InvalidArgumentError(absl::StrCat(path, " cannot be read"));
+    uint64_t line_number = 0;
+    for (std::string line; std::getline(file, line);) {
+      const absl::Status follows = take(line);
+      ++line_number;
+      if (!follows.ok()) {
+        return absl::DataLossError(absl::StrCat(path, " line ", line_number, ": ", std::string(follows.message())));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  const AuditSummary& summary() const { return summary_; }
+
+ private:
+  absl::Status take(const std::string& line) {
+    AuditHead told;
+    const bool is_whole = read_audit_line(line, told);
+    if (!is_whole) {
+      ++summary_.torn_lines;
+    } else if (!has_begun_) {
+      summary_.before = {told.number - 1, told.hash};
+    } else if (told.hash != summary_.head.hash) {
+      return absl::DataLossError(absl::StrCat("does not carry on from the line before, number ", summary_.head.number,
+                                              ": a line was changed, taken out or put in"));
+    } else if (told.number != summary_.head.number + 1) {
+      return absl::DataLossError(
+          absl::StrCat("has the number ", told.number, ", must have ", summary_.head.number + 1));
+    }
+    if (is_whole) summary_.head.number = told.number;
+    summary_.head.hash = hash_of_line(line);
+    has_begun_ = true;
+    ++summary_.lines;
+    return absl::OkStatus();
+  }
+
+  AuditSummary summary_;
+  bool has_begun_ = false;
+};
+
+}  // namespace
+
+absl::StatusOr<AuditSummary> verify_audit(const std::vector<std::string>& files) {
+  AuditReader reader;
+  for (const std::string& file : files) {
+    if (auto read = reader.read(file); !read.ok()) return read;
+  }
+  return reader.summary();
+}
+
+}  // namespace lipofill::server

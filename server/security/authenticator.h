@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/security/certificate_map.h"
+#include "server/security/security_settings.h"
+#include "server/security/token_verifier.h"
+
+namespace lipofill::server {
+
+/// What a call has to say who makes it.
+struct Credentials {
+  std::vector<std::string> authorization;  ///< values of the metadata "authorization"
+  bool has_certificate = false;            ///< that the client's authorities have signed
+  std::vector<std::string> common_names;
+  std::vector<std::string> alternative_names;
+  bool is_unix_socket = false;
+};
+
+/// Tells who calls: by a bearer token; without one by the client certificate; without either, where it is so set, by
+/// having come through a UNIX socket. Where neither tokens nor certificates are set up, everybody is the user of this
+/// machine. Thread-safe. Checked by tests/unit/security/authenticator_test.cc and tests/integration/security/.
+class Authenticator {
+ public:
+  /// INVALID_ARGUMENT with a violation for every file that cannot be used.
+  static absl::StatusOr<std::unique_ptr<Authenticator>> open(const SecuritySettings& settings);
+
+  /// UNAUTHENTICATED with a reason: NO_CREDENTIALS, TOKEN_..., CERTIFICATE_UNKNOWN, CREDENTIALS_DISAGREE for a token of
+  /// another tenant than its certificate.
+  absl::StatusOr<Principal> identify(const Credentials& credentials) const;
+
+ private:
+  Authenticator() = default;
+  absl::StatusOr<Principal> identify_by_token(const Credentials& credentials, const Principal* holder) const;
+
+  bool trusts_unix_sockets_ = false;
+  std::unique_ptr<TokenVerifier> tokens_;
+  std::unique_ptr<WatchedFile<CertificateMap>> certificates_;
+};
+
+}  // namespace lipofill::server

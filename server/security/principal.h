@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "server/store/scope.h"
+
+namespace lipofill::server {
+
+/// What somebody may do. Each role may do what those before it may.
+enum class Role {
+  kNone,     ///< is known, and may do nothing
+  kViewer,   ///< looks
+  kPlanner,  ///< changes: patients, scans, models, simulations
+  kAdmin,    ///< deletes patients and all that is theirs
+};
+
+const char* role_name(Role role);
+/// kNone for a word that is no role.
+Role role_of(const std::string& word);
+
+/// A tenant's name: a lower-case letter, then up to 30 of a-z and 0-9. Without '-', so that an id that begins with
+/// "{tenant}-" is one tenant's alone.
+bool is_tenant(const std::string& text);
+
+/// Who calls. By default the user of this machine, to whom a daemon without authentication belongs.
+struct Principal {
+  using Clock = std::chrono::system_clock;
+
+  std::string subject = "local";
+  Role role = Role::kAdmin;
+  Scope scope;
+  std::optional<Clock::time_point> expires = {};  ///< of its token, with the clock's tolerance
+
+  bool has_expired(Clock::time_point now = Clock::now()) const { return expires && now >= *expires; }
+};
+
+}  // namespace lipofill::server

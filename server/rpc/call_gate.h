@@ -42,6 +42,7 @@ class CallGate {
 
  private:
   absl::Status admit_by_rule(Call& call, const Metadata& metadata, const grpc::ServerContextBase& context);
+  absl::Status check_owner(const Scope& scope, const absl::StatusOr<Owner>& owner, const std::string& name);
   absl::Status check_reach(const Scope& scope, const ResourceNames& names);
   absl::Status begin(Call& call);
 

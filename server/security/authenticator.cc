@@ -37,7 +37,7 @@ absl::StatusOr<std::unique_ptr<Authenticator>> Authenticator::open(const Securit
 }
 
 absl::StatusOr<Principal> Authenticator::identify(const Credentials& credentials) const {
-  if (tokens_ == nullptr && certificates_ == nullptr) return Principal{};
+  if (!asks()) return Principal{};
   const auto map = certificates_ != nullptr ? certificates_->get() : nullptr;
   const Principal* holder = map != nullptr && credentials.has_certificate
                                 ? map->find(credentials.common_names, credentials.alternative_names)

@@ -28,6 +28,9 @@ class Authenticator {
   /// INVALID_ARGUMENT with a violation for every file that cannot be used.
   static absl::StatusOr<std::unique_ptr<Authenticator>> open(const SecuritySettings& settings);
 
+  /// Whether callers must say who they are.
+  bool asks() const { return tokens_ != nullptr || certificates_ != nullptr; }
+
   /// UNAUTHENTICATED with a reason: NO_CREDENTIALS, TOKEN_..., CERTIFICATE_UNKNOWN, CREDENTIALS_DISAGREE for a token of
   /// another tenant than its certificate.
   absl::StatusOr<Principal> identify(const Credentials& credentials) const;

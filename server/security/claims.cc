@@ -41,9 +41,9 @@ bool names(const Json* audience, const std::string& expected) {
 absl::StatusOr<std::optional<TimePoint>> read_time(const Json& claims, const char* name) {
   const Json* value = find(claims, name);
   if (value == nullptr) return std::nullopt;
-  const bool fits = value->is_number_unsigned() && value->get<uint64_t>() <= static_cast<uint64_t>(kLastTime);
-  if (!fits) return bad_claim(absl::StrCat(name, " must be whole seconds since 1970"));
-  return TimePoint(std::chrono::seconds(value->get<int64_t>()));
+  const int64_t seconds = value->is_number_integer() ? value->get<int64_t>() : -1;
+  if (seconds < 0 || seconds > kLastTime) return bad_claim(absl::StrCat(name, " must be whole seconds since 1970"));
+  return TimePoint(std::chrono::seconds(seconds));
 }
 
 absl::Status check_times(const Json& claims, const ClaimRules& rules, TimePoint now, Principal& principal) {

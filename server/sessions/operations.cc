@@ -14,8 +14,8 @@ namespace {
 constexpr size_t kMaxDone = 1000;
 constexpr char kPatients[] = "patients/";
 
-bool has(const Scope& scope, const OperationView& view) {
-  return scope.has(view.tenant, std::string(absl::StripPrefix(view.target, kPatients)));
+Owner owner_of_view(const OperationView& view) {
+  return {view.tenant, std::string(absl::StripPrefix(view.target, kPatients))};
 }
 
 absl::Status no_operation(const std::string& id) {
@@ -125,9 +125,10 @@ absl::StatusOr<OperationView> Operations::get(const std::string& id) const {
   return found->second.view;
 }
 
-absl::StatusOr<OperationView> Operations::get(const std::string& id, const Scope& scope) const {
-  auto view = get(id);
-  return view.ok() && !has(scope, *view) ? no_operation(id) : view;
+absl::StatusOr<Owner> Operations::owner_of(const std::string& id) const {
+  const auto view = get(id);
+  if (!view.ok()) return view.status();
+  return owner_of_view(*view);
 }
 
 std::vector<OperationView> Operations::list(const Scope& scope, const Page& page) const {
@@ -135,7 +136,8 @@ std::vector<OperationView> Operations::list(const Scope& scope, const Page& page
   std::vector<OperationView> views;
   for (auto entry = entries_.upper_bound(page.after); entry != entries_.end(); ++entry) {
     if (static_cast<int>(views.size()) == page.size) break;
-    if (has(scope, entry->second.view)) views.push_back(entry->second.view);
+    const Owner owner = owner_of_view(entry->second.view);
+    if (scope.has(owner.tenant, owner.patient)) views.push_back(entry->second.view);
   }
   return views;
 }

@@ -55,8 +55,7 @@ class Operations {
   void drop(const std::string& id);
 
   absl::StatusOr<OperationView> get(const std::string& id) const;
-  /// The same where the scope has it; else as if there were none.
-  absl::StatusOr<OperationView> get(const std::string& id, const Scope& scope) const;
+  absl::StatusOr<Owner> owner_of(const std::string& id) const;
   /// Of what the scope has.
   std::vector<OperationView> list(const Scope& scope, const Page& page) const;
   /// The reply comes when it is done, its progress is not `seen_progress`, or the timeout has passed. On any thread.

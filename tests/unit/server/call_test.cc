@@ -63,6 +63,8 @@ TEST(MethodRules, KnowEveryMethodOfEveryService) {
       const std::string method = "/" + service->full_name() + "/" + service->method(i)->name();
       EXPECT_TRUE(has_rule(method)) << method << " is not in server/rpc/method_rules.cc";
       const std::string& name = service->method(i)->name();
+      EXPECT_FALSE(rule_of(method) == nullptr || rule_of(method)->is_open || rule_of(method)->least < Role::kViewer)
+          << method << " must ask who calls";
       EXPECT_TRUE(name.rfind("Get", 0) != 0 || effect_of(method) == Effect::kNone) << method;
       EXPECT_TRUE(name.rfind("Create", 0) != 0 || effect_of(method) == Effect::kBegins) << method;
     }

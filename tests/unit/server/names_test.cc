@@ -46,6 +46,15 @@ TEST(Names, IdsAreMadeUpWhenEmpty) {
   EXPECT_FALSE(id_or_new("Anna Smith", 'p', "patient_id").ok());
 }
 
+TEST(Names, IdsThatATenantChoosesBeginWithItsName) {
+  EXPECT_EQ(*id_or_new("ward-a", 'p', "patient_id", "ward"), "ward-a");
+  EXPECT_EQ(*id_or_new("a", 'p', "patient_id", "local"), "a");
+  EXPECT_TRUE(id_or_new("", 'p', "patient_id", "ward").ok());
+  for (const char* bad : {"a", "ward", "ward3-a", "clinic-a"}) {
+    EXPECT_TRUE(absl::IsInvalidArgument(id_or_new(bad, 'p', "patient_id", "ward").status())) << bad;
+  }
+}
+
 TEST(Names, DisplayNamesAndRequestIdsAreShortAndPlain) {
   EXPECT_TRUE(check_display_name("", "display_name").ok());
   EXPECT_TRUE(check_display_name("case-17", "display_name").ok());

@@ -86,5 +86,21 @@ TEST(Operations, RemembersABoundedNumber) {
   EXPECT_TRUE(operations.get(running).ok());
 }
 
+TEST(Operations, BelongToATenantAndAPatient) {
+  Operations operations;
+  const RequestKey ours{"BuildModel", "r1", "f", "ward"};
+  const std::string id = operations.start("patients/ward-a", ours)->operation.id;
+  const auto theirs = operations.start("patients/clinic-a", {"BuildModel", "r1", "f", "clinic"});
+  ASSERT_TRUE(theirs.ok());
+  EXPECT_TRUE(theirs->is_new) << "a request id is a tenant's own";
+  EXPECT_EQ(operations.owner_of(id)->tenant, "ward");
+  EXPECT_EQ(operations.owner_of(id)->patient, "ward-a");
+  EXPECT_TRUE(absl::IsNotFound(operations.owner_of("none").status()));
+  ASSERT_EQ(operations.list({"ward"}, {"", 10}).size(), 1u);
+  EXPECT_EQ(operations.list({"ward"}, {"", 10})[0].id, id);
+  EXPECT_EQ(operations.list({"ward", {{"ward-b"}}}, {"", 10}).size(), 0u);
+  EXPECT_EQ(operations.list({}, {"", 10}).size(), 0u);
+}
+
 }  // namespace
 }  // namespace lipofill::server

@@ -110,8 +110,11 @@ TEST_F(StoreTest, ListsWhatAScopeHas) {
   }
   const auto ids = [this](const Scope& scope) {
     std::vector<std::string> found;
-    for (const auto& patient : *store_->list_patients(scope, {"", 10})) found.push_back(patient.id);
-    for (const auto& one : *store_->list_simulations(scope, {"", 10})) found.push_back(one.id);
+    const auto patients = store_->list_patients(scope, {"", 10});
+    const auto simulations = store_->list_simulations(scope, {"", 10});
+    EXPECT_TRUE(patients.ok() && simulations.ok()) << patients.status() << simulations.status();
+    for (const auto& patient : patients.value()) found.push_back(patient.id);
+    for (const auto& one : simulations.value()) found.push_back(one.id);
     return found;
   };
   EXPECT_THAT(ids({}), ElementsAre());

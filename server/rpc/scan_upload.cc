@@ -141,7 +141,8 @@ absl::StatusOr<v1::Scan> ScanUploads::create(const Principal& caller, const v1::
     const auto owner = backend_.store.get_patient(*patient);
     return owner.ok() ? absl::StatusOr<v1::Scan>(to_scan(record)) : owner.status();
   }
-  const auto made = backend_.store.create_scan(record, make_request_key(caller, "CreateScan", request.request_id(), request));
+  const auto made =
+      backend_.store.create_scan(record, make_request_key(caller, "CreateScan", request.request_id(), request));
   if (!made.ok()) return made.status();
   return to_scan(*made);
 }

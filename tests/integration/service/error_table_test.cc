@@ -84,6 +84,7 @@ std::vector<Row> patient_rows() {
       invalid(patients + "ListModels", R"({"parent":"patients/anna","readMask":"nose"})", {"read_mask.paths[0]"}),
       absent(patients + "DeleteModel", R"({"name":"patients/anna/models/none"})"),
       absent(patients + "DownloadModelMesh", R"({"name":"patients/anna/models/none"})"),
+      absent(patients + "DownloadScanMesh", R"({"name":"patients/anna/scans/none"})"),
   };
 }
 

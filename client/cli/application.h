@@ -64,6 +64,6 @@ void add_export_command(CLI::App& root, Application& application);
 void add_evaluate_command(CLI::App& root, Application& application);
 void add_operation_commands(CLI::App& root, Application& application);
 void add_health_command(CLI::App& root, Application& application);
-void add_picture_command(CLI::App& root, Application& application);
+void add_render_command(CLI::App& root, Application& application);
 
 }  // namespace lipofill::client

@@ -7,9 +7,6 @@
 #include "client/cli/listing.h"
 #include "client/cli/progress_line.h"
 #include "client/cli/result_files.h"
-#include "client/cli/run_record.h"
-#include "client/cli/simulation_calls.h"
-#include "client/cpp/io/result_folder.h"
 #include "client/cpp/tissue_deck.h"
 
 namespace lipofill::client {
@@ -34,27 +31,6 @@ absl::StatusOr<std::string> export_deck(const Application& application, const Co
   return absl::StrFormat("wrote the tissue of %s at %g s to %s", name, deck->time_s, options.deck);
 }
 
-absl::StatusOr<std::string> export_result(const Connection& connection, const Options& options) {
-  const auto simulation = get_simulation(connection, options.simulation);
-  if (!simulation.ok()) return simulation.status();
-  const auto meshes = mesh_names(connection, *simulation);
-  if (!meshes.ok()) return meshes.status();
-  auto state = final_state(connection, *simulation, *meshes);
-  if (!state.ok()) return state.status();
-  std::vector<v1::SeriesRow> rows;
-  if (auto status = fetch_series(connection, simulation->name(), &rows); !status.ok()) return status;
-  const auto record = record_of_simulation(connection, *simulation);
-  if (!record.ok()) return record.status();
-
-  ResultFolder folder(options.out);
-  if (auto status = folder.prepare(); !status.ok()) return status;
-  folder.set_meshes(std::move(state->meshes.arrays));
-  if (auto status = folder.write_frame(state->frame.time_s, state->frame.fields); !status.ok()) return status;
-  if (auto status = write_figures(folder.path(), record->plan, *simulation, rows); !status.ok()) return status;
-  if (auto status = write_run_record(folder.path(), *record); !status.ok()) return status;
-  return absl::StrCat("wrote the final state of ", simulation->name(), " to ", options.out);
-}
-
 absl::StatusOr<ExitCode> export_simulation(Application& application, const Options& options) {
   if (options.out.empty() && options.deck.empty()) {
     return absl::InvalidArgumentError("--out FOLDER, --deck FILE or both are needed: what to write, and where to");
@@ -62,7 +38,7 @@ absl::StatusOr<ExitCode> export_simulation(Application& application, const Optio
   const Connection connection = application.connect();
   std::vector<std::string> done;
   if (!options.out.empty()) {
-    auto text = export_result(connection, options);
+    auto text = export_result(connection, options.simulation, options.out);
     if (!text.ok()) return text.status();
     done.push_back(*std::move(text));
   }

@@ -33,7 +33,7 @@ absl::Status run_drawing(const std::vector<std::string>& command) {
 }  // namespace
 
 absl::Status draw_picture(const std::filesystem::path& folder, Picture picture, const std::filesystem::path& png) {
-  std::vector<std::string> command = {this_program().string(), "picture", folder.string(), "--out", png.string(),
+  std::vector<std::string> command = {this_program().string(), "render", folder.string(), "--out", png.string(),
                                       "--in-this-process"};
   if (picture == Picture::kDistance) command.push_back("--distance");
   absl::Status status = absl::FailedPreconditionError(kNoScreen);

@@ -9,6 +9,7 @@
 #include "client/cli/picture.h"
 #include "client/cli/simulation_calls.h"
 #include "client/cpp/io/mesh_files.h"
+#include "client/cpp/io/result_folder.h"
 #include "client/cpp/json_file.h"
 #include "client/cpp/json_message.h"
 #include "client/cpp/landmarks_file.h"
@@ -92,6 +93,28 @@ absl::Status write_figures(const std::filesystem::path& folder, const std::strin
   if (auto status = write_text_file(folder / "series.csv", series_csv(simulation.spec(), rows)); !status.ok())
     return status;
   return write_text_file(folder / "summary.json", summary_json(plan, simulation));
+}
+
+absl::StatusOr<std::string> export_result(const Connection& connection, const std::string& name,
+                                          const std::filesystem::path& out) {
+  const auto simulation = get_simulation(connection, name);
+  if (!simulation.ok()) return simulation.status();
+  const auto meshes = mesh_names(connection, *simulation);
+  if (!meshes.ok()) return meshes.status();
+  auto state = final_state(connection, *simulation, *meshes);
+  if (!state.ok()) return state.status();
+  std::vector<v1::SeriesRow> rows;
+  if (auto status = fetch_series(connection, simulation->name(), &rows); !status.ok()) return status;
+  const auto record = record_of_simulation(connection, *simulation);
+  if (!record.ok()) return record.status();
+
+  ResultFolder folder(out);
+  if (auto status = folder.prepare(); !status.ok()) return status;
+  folder.set_meshes(std::move(state->meshes.arrays));
+  if (auto status = folder.write_frame(state->frame.time_s, state->frame.fields); !status.ok()) return status;
+  if (auto status = write_figures(folder.path(), record->plan, *simulation, rows); !status.ok()) return status;
+  if (auto status = write_run_record(folder.path(), *record); !status.ok()) return status;
+  return absl::StrCat("wrote the final state of ", simulation->name(), " to ", out.string());
 }
 
 absl::StatusOr<v1::Evaluation> evaluate_into(const std::filesystem::path& folder, const Connection& connection,

@@ -81,19 +81,19 @@ TEST_F(BadInputTest, Volumes) {
 }
 
 TEST_F(BadInputTest, PicturesOfNothing) {
-  expect_failure("lipofill picture .", 2, "not a folder that lipofill run has written");
+  expect_failure("lipofill render .", 2, "not a folder that lipofill run has written");
   write("run.json", R"({"plan": "p", "simulation": "", "server": "", "data": "", "kept": false})");
-  expect_failure("lipofill picture .", 2, "holds no");
+  expect_failure("lipofill render .", 2, "holds no");
   write("skin_0000.vtp", "not XML");
-  expect_failure("lipofill picture .", 2, "cannot read the mesh");
+  expect_failure("lipofill render .", 2, "cannot read the mesh");
   // A screen that is not there is not the end: xvfb-run is tried next, and it is the file that is refused.
-  expect_failure("env DISPLAY=:4711 lipofill picture .", 2, "cannot read the mesh");
+  expect_failure("env DISPLAY=:4711 lipofill render .", 2, "cannot read the mesh");
 }
 
 TEST_F(BadInputTest, NoScreenSaysWhatToInstall) {
   write("run.json", R"({"plan": "p", "simulation": "", "server": "", "data": "", "kept": false})");
   // Only the folder of lipofill on the path: no xvfb-run.
-  expect_failure("env PATH=" LIPOFILL_BIN " lipofill picture .", 4, "apt-get install xvfb");
+  expect_failure("env PATH=" LIPOFILL_BIN " lipofill render .", 4, "apt-get install xvfb");
 }
 
 }  // namespace

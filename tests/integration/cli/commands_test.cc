@@ -178,6 +178,8 @@ TEST_F(CommandsTest, ResultsOutliveTheDaemon) {
   EXPECT_EQ(read_json("again/summary.json")["state_hash"], summary["state_hash"]);
   EXPECT_EQ(read("again/series.csv"), read("out/series.csv"));
   EXPECT_EQ(read("again/skin_0000.vtp"), read("out/skin_0005.vtp"));
+  ask("render " + simulation + " --out sheet.png");
+  EXPECT_EQ(read("sheet.png").substr(1, 3), "PNG");
   write_plane("goal.obj", 0.5);
   const auto evaluation = ask("evaluate " + simulation + " --target goal.obj --out again");
   EXPECT_NEAR(evaluation["before_to_target"]["mean_mm"].get<double>(), 0.5, 1e-6);

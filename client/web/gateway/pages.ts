@@ -17,7 +17,7 @@ const types: Record<string, string> = {
 
 // The page runs what came with it, and nothing else.
 const policy =
-  "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; " +
+  "default-src 'self'; script-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; worker-src 'self' blob:; " +
   "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 /** A file below `folder` by its path in the address; undefined where the path leads out of it. */

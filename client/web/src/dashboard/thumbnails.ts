@@ -4,7 +4,7 @@ import { ArrayType } from "@wire/frame_service_pb";
 import { Simulation_State, type Simulation } from "@wire/simulation_pb";
 import { ArrayAssembler, toNumbers } from "../api/arrays";
 import { frames } from "../api/client";
-import { meshesOf, trianglesOf, type Mesh } from "../api/meshes";
+import { meshesOf, type Mesh } from "../api/meshes";
 import { mapFor, paint, skinColour } from "../scene/colour_maps";
 import { largestOf } from "../scene/face_colours";
 import { Surface } from "../scene/surface";
@@ -64,7 +64,7 @@ export class Thumbnails {
   private async picture(simulation: Simulation): Promise<void> {
     const step = simulation.summary?.steps ?? 0n;
     const { mesh, displacement } = await this.fetch(simulation.name);
-    const surface = new Surface(mesh.points, trianglesOf(mesh));
+    const surface = new Surface(mesh);
     surface.move(displacement);
     colour(surface, displacement);
     this.viewport.add(surface.actor);

@@ -9,7 +9,8 @@ export class FrameStore {
   private newest: Frame | undefined;
   private bytes = 0;
   private stride = 1;
-  private arrived = 0;
+  /** frames that came, kept or not */
+  arrived = 0;
 
   constructor(private readonly mostBytes = 96 << 20) {}
 

@@ -7,7 +7,7 @@ import { SeriesRowSchema, SimulationSchema, type SeriesRow } from "@wire/simulat
 import type { WireArray } from "../api/arrays";
 import type { Mesh } from "../api/meshes";
 import type { Frame } from "../api/watch";
-import { close, faceMesh, frame, meshes, recorded, rows, simulation, store } from "./run";
+import { close, faceMesh, lookAt, meshes, recorded, rows, simulation, store } from "./run";
 
 interface Surface {
   mesh: Mesh;
@@ -97,6 +97,6 @@ export async function openFolder(files: File[], progress: (share: number) => voi
     recorded.value = collection.webkitRelativePath.split("/")[0] || "recorded run";
     rows.value = series === undefined ? [] : parseSeries(series);
     if (summary !== undefined) simulation.value = parseSummary(summary);
-    frame.value = store.latest;
+    lookAt(undefined);
   });
 }

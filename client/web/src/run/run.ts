@@ -18,6 +18,8 @@ export const meshes = signal<Map<string, Mesh> | undefined>(undefined);
 export const frame = signal<Frame | undefined>(undefined);
 /** simulated time that is looked at; undefined: the newest */
 export const lookedAt = signal<number | undefined>(undefined);
+/** of the frame that is shown, for figures: no faster than they can be read */
+export const timeShown = signal<number | undefined>(undefined);
 export const skipped = signal(0);
 export const store = new FrameStore();
 /** "scan" or, without one, "skin" */
@@ -30,11 +32,27 @@ const underWay = [Simulation_State.READY, Simulation_State.QUEUED, Simulation_St
 export const isUnderWay = computed(() => underWay.includes(state.value));
 /** It takes the commands of one that runs. */
 export const isRunning = computed(() => state.value === Simulation_State.RUNNING || state.value === Simulation_State.QUEUED);
-export const hasResult = computed(() => frame.value !== undefined && (recorded.value !== "" || (simulation.value?.summary?.steps ?? 0n) > 0n));
+export const hasFrame = computed(() => frame.value !== undefined);
+export const hasResult = computed(() => hasFrame.value && (recorded.value !== "" || (simulation.value?.summary?.steps ?? 0n) > 0n));
 
 let leave = new AbortController();
 const pollMs = 400;
 const mostRows = 20_000;
+
+/** Figures that change more often than this cannot be read, and drawing them takes what the face needs. */
+const readableMs = 200;
+let figuresDue: ReturnType<typeof setTimeout> | undefined;
+
+function showTime(atOnce: boolean): void {
+  if (atOnce) {
+    timeShown.value = frame.value?.timeS;
+  } else {
+    figuresDue ??= setTimeout(() => {
+      figuresDue = undefined;
+      timeShown.value = frame.value?.timeS;
+    }, readableMs);
+  }
+}
 
 const listener: Listener = {
   meshes: (next) => (meshes.value = next),
@@ -46,6 +64,7 @@ const listener: Listener = {
       skipped.value += skippedBefore;
       if (lookedAt.value === undefined) frame.value = next;
     });
+    showTime(next.end);
   },
 };
 
@@ -56,6 +75,7 @@ export function close(): void {
   store.clear();
   batch(() => {
     [simulation.value, frame.value, meshes.value, lookedAt.value, recorded.value] = [undefined, undefined, undefined, undefined, ""];
+    timeShown.value = undefined;
     [rows.value, skipped.value, connection.value] = [[], 0, "idle"];
   });
 }
@@ -163,5 +183,6 @@ export function lookAt(timeS: number | undefined): void {
   batch(() => {
     lookedAt.value = timeS;
     frame.value = timeS === undefined ? store.latest : store.at(timeS);
+    showTime(true);
   });
 }

@@ -61,11 +61,11 @@ export const quantities: Record<Quantity, QuantityInfo> = {
   distance: { label: "Distance to target", unit: "mm", factor: 1 },
 };
 
-/** A round number at or above: 1, 2, 3, 5 times a power of ten. */
+/** A round number at or above. */
 export function roundUp(value: number): number {
   if (!(value > 0)) return 1;
   const power = 10 ** Math.floor(Math.log10(value));
-  for (const step of [1, 2, 3, 5, 10]) if (value <= step * power * (1 + 1e-9)) return step * power;
+  for (const step of [1, 1.5, 2, 3, 4, 5, 6, 8, 10]) if (value <= step * power * (1 + 1e-9)) return step * power;
   return 10 * power;
 }
 

@@ -1,5 +1,5 @@
 // The face on the page: before and after, its region and layers, what a frame colours, what lies under the cursor.
-import { trianglesOf, type Mesh } from "../api/meshes";
+import type { Mesh } from "../api/meshes";
 import type { Frame } from "../api/watch";
 import type { ColourMap, Quantity, Rgb } from "./colour_maps";
 import { skinColour } from "./colour_maps";
@@ -56,7 +56,7 @@ export class FaceScene {
     }
     [this.faceMesh, this.numbers, this.distance] = [mesh, undefined, undefined];
     this.running.forget();
-    this.face = mesh && new Surface(mesh.points, trianglesOf(mesh));
+    this.face = mesh && new Surface(mesh);
     if (this.face) this.viewport.add(this.face.actor);
     if (this.before) this.fillBefore();
     this.viewport.request();
@@ -70,7 +70,7 @@ export class FaceScene {
       this.patch = undefined;
     }
     if (skin) {
-      this.patch = new Surface(skin.points, trianglesOf(skin));
+      this.patch = new Surface(skin);
       this.patch.lift(0.35);
       this.patch.opacity = 0.82;
       this.viewport.add(this.patch.actor);
@@ -173,7 +173,7 @@ export class FaceScene {
       before.viewport.remove(before.surface.actor);
       before.surface.dispose();
     }
-    before.surface = this.faceMesh && new Surface(this.faceMesh.points, trianglesOf(this.faceMesh));
+    before.surface = this.faceMesh && new Surface(this.faceMesh);
     if (before.surface) before.viewport.add(before.surface.actor);
     before.viewport.request();
   }

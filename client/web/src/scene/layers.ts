@@ -8,7 +8,7 @@ const faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7,
 
 export const layerColours: Rgb[] = [[224, 176, 150], [240, 214, 120], [196, 150, 170], [170, 70, 66], [120, 110, 150]];
 
-/** Faces that only one of the hexahedra has, as triangles. */
+/** Faces that only one of the hexahedra has, as quadrilaterals. */
 export function outerFaces(cells: Uint32Array): Uint32Array {
   const seen = new Map<string, number[] | null>();
   for (let h = 0; h < cells.length; h += 8) {
@@ -18,9 +18,7 @@ export function outerFaces(cells: Uint32Array): Uint32Array {
       seen.set(key, seen.has(key) ? null : quad);
     }
   }
-  const triangles: number[] = [];
-  for (const quad of seen.values()) if (quad !== null) triangles.push(quad[0], quad[1], quad[2], quad[0], quad[2], quad[3]);
-  return Uint32Array.from(triangles);
+  return Uint32Array.from([...seen.values()].flatMap((quad) => quad ?? []));
 }
 
 /** @param elementsThrough of each layer, from the skin inwards */
@@ -35,11 +33,11 @@ export function makeLayers(tissue: Mesh, elementsThrough: number[]): Surface[] {
   });
 }
 
-/** A surface of only those points that its triangles use. */
-function compact(points: Float32Array, triangles: Uint32Array, colour: Rgb): Surface {
+/** A surface of only those points that its quadrilaterals use. */
+function compact(points: Float32Array, quads: Uint32Array, colour: Rgb): Surface {
   const number = new Map<number, number>();
   const used: number[] = [];
-  const renumbered = triangles.map((index) => {
+  const cells = quads.map((index) => {
     let k = number.get(index);
     if (k === undefined) {
       k = number.size;
@@ -48,5 +46,6 @@ function compact(points: Float32Array, triangles: Uint32Array, colour: Rgb): Sur
     }
     return k;
   });
-  return new Surface(Float32Array.from(used), renumbered, colour);
+  const mesh: Mesh = { name: "layer", points: Float32Array.from(used), cells, corners: 4 };
+  return new Surface(mesh, colour);
 }

@@ -3,6 +3,7 @@ import vtkDataArray from "@kitware/vtk.js/Common/Core/DataArray";
 import vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
 import vtkActor from "@kitware/vtk.js/Rendering/Core/Actor";
 import vtkMapper from "@kitware/vtk.js/Rendering/Core/Mapper";
+import { trianglesOf, type Mesh } from "../api/meshes";
 import { computeNormals } from "./surface_geometry";
 import { skinColour, type Rgb } from "./colour_maps";
 
@@ -17,14 +18,19 @@ export class Surface {
   private readonly normalArray: vtkDataArray;
   private readonly colourArray: vtkDataArray;
 
-  constructor(readonly rest: Float32Array, readonly triangles: Uint32Array, colour: Rgb = skinColour) {
-    this.points = rest.slice();
-    this.normals = new Float32Array(rest.length);
-    this.colours = new Uint8Array(rest.length);
+  readonly rest: Float32Array;
+  readonly triangles: Uint32Array;
+
+  constructor(mesh: Mesh, colour: Rgb = skinColour) {
+    this.rest = mesh.points;
+    this.triangles = trianglesOf(mesh);
+    this.points = this.rest.slice();
+    this.normals = new Float32Array(this.rest.length);
+    this.colours = new Uint8Array(this.rest.length);
     this.fill(colour);
-    computeNormals(this.points, triangles, this.normals);
+    computeNormals(this.points, this.triangles, this.normals);
     this.data.getPoints().setData(this.points, 3);
-    this.data.getPolys().setData(listed(triangles));
+    this.data.getPolys().setData(listed(mesh));
     this.normalArray = vtkDataArray.newInstance({ name: "normals", numberOfComponents: 3, values: this.normals });
     this.colourArray = vtkDataArray.newInstance({ name: "colours", numberOfComponents: 3, values: this.colours });
     this.data.getPointData().setNormals(this.normalArray);
@@ -87,14 +93,12 @@ export class Surface {
   }
 }
 
-/** Each triangle behind the number of its corners, as the toolkit stores cells. */
-function listed(triangles: Uint32Array): Uint32Array {
-  const cells = new Uint32Array((triangles.length / 3) * 4);
-  for (let t = 0, k = 0; t < triangles.length; t += 3) {
-    cells[k++] = 3;
-    cells[k++] = triangles[t];
-    cells[k++] = triangles[t + 1];
-    cells[k++] = triangles[t + 2];
+/** Each cell behind the number of its corners, as the toolkit stores cells. */
+function listed({ cells, corners }: Mesh): Uint32Array {
+  const list = new Uint32Array((cells.length / corners) * (corners + 1));
+  for (let from = 0, to = 0; from < cells.length; from += corners) {
+    list[to++] = corners;
+    for (let c = 0; c < corners; ++c) list[to++] = cells[from + c];
   }
-  return cells;
+  return list;
 }

@@ -19,6 +19,20 @@ export interface CameraPose {
 
 const background: Point = [0.905, 0.925, 0.93];
 
+let graphicsCard: boolean | undefined;
+
+/** Without one, smooth edges cost more than they are worth. */
+function hasGraphicsCard(): boolean {
+  if (graphicsCard === undefined) {
+    const gl = document.createElement("canvas").getContext("webgl2");
+    const info = gl?.getExtension("WEBGL_debug_renderer_info");
+    const name = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+    graphicsCard = !/swiftshader|llvmpipe|software/i.test(name);
+    gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  }
+  return graphicsCard;
+}
+
 export class Viewport {
   private readonly renderWindow = vtkRenderWindow.newInstance();
   private readonly renderer = vtkRenderer.newInstance({ background });
@@ -31,10 +45,13 @@ export class Viewport {
   /** told when the camera was moved by hand */
   onCamera: (pose: CameraPose) => void = () => undefined;
   private following = false;
+  private sharpness = 1;
 
   constructor(readonly container: HTMLElement) {
     this.renderWindow.addRenderer(this.renderer);
     this.renderWindow.addView(this.gl);
+    const canvas = this.gl.getCanvas() as HTMLCanvasElement;
+    canvas.getContext("webgl2", { antialias: hasGraphicsCard(), depth: true, alpha: true, powerPreference: "high-performance" });
     this.gl.setContainer(container);
     this.interactor.setView(this.gl);
     this.interactor.initialize();
@@ -50,11 +67,18 @@ export class Viewport {
 
   private fit(): void {
     const { width, height } = this.container.getBoundingClientRect();
-    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    const ratio = this.sharpness * Math.min(window.devicePixelRatio || 1, 2);
     this.gl.setSize(Math.max(1, Math.round(width * ratio)), Math.max(1, Math.round(height * ratio)));
     const canvas = this.gl.getCanvas();
     if (canvas) Object.assign(canvas.style, { width: "100%", height: "100%", display: "block" });
     this.request();
+  }
+
+  /** Pixels of the picture to those of the screen; fewer where a machine is too slow for all of them. */
+  set detail(share: number) {
+    if (share === this.sharpness) return;
+    this.sharpness = share;
+    this.fit();
   }
 
   private cameraMoved(): void {

@@ -1,6 +1,6 @@
 // Parts of forms: each says beside itself what the daemon has against it.
 import type { ComponentChildren } from "preact";
-import { useId } from "preact/hooks";
+import { useId, useState } from "preact/hooks";
 import { violations } from "../plan/state";
 import { descriptionFor } from "../plan/violations";
 
@@ -24,14 +24,20 @@ interface NumberProps {
 
 export function NumberField({ label, unit, value, field, step, min, max, placeholder, onChange }: NumberProps) {
   const id = useId();
+  // What is being typed stays while the page around it is drawn again.
+  const [typed, setTyped] = useState<string | undefined>(undefined);
   const wrong = field !== undefined && descriptionFor(field, violations.value) !== "";
   return (
     <div class="field">
       <label for={id}>{label}</label>
       <span class="with-unit">
-        <input id={id} type="number" value={value ?? ""} step={step ?? "any"} min={min} max={max} placeholder={placeholder}
+        <input id={id} type="number" value={typed ?? value ?? ""} step={step ?? "any"} min={min} max={max} placeholder={placeholder}
           aria-invalid={wrong} aria-describedby={wrong ? `${id}-complaint` : undefined}
-          onChange={(event) => onChange(event.currentTarget.value === "" ? undefined : Number(event.currentTarget.value))} />
+          onInput={(event) => setTyped(event.currentTarget.value)}
+          onChange={(event) => {
+            setTyped(undefined);
+            onChange(event.currentTarget.value === "" ? undefined : Number(event.currentTarget.value));
+          }} />
         {unit && <span class="unit">{unit}</span>}
       </span>
       <Complaint field={field} id={`${id}-complaint`} />

@@ -1,6 +1,6 @@
 // The figures a surgeon looks for first, and how they came about.
 import { readable } from "../plan/anatomy";
-import { frame, lookAt, rows, simulation } from "../run/run";
+import { lookAt, rows, simulation, timeShown } from "../run/run";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { Plot } from "./plot";
 
@@ -16,7 +16,7 @@ function Figure({ label, value, unit, note, chip }: { label: string; value: stri
 
 /** The row at the time that is looked at. */
 function rowNow() {
-  const at = frame.value?.timeS;
+  const at = timeShown.value;
   const all = rows.value;
   if (at === undefined || all.length === 0) return all.at(-1);
   let [low, high] = [0, all.length - 1];
@@ -55,13 +55,13 @@ export function Figures() {
       <Figure label="Injected" value={(row?.injectedMl ?? 0).toFixed(2)} unit="mL" />
       <Figure label="Highest pressure" value={pressure.toFixed(1)} unit="mmHg" note={`${((row?.maxPressurePa ?? 0) / 1000).toFixed(2)} kPa · ${pressureBands[band].name} mmHg`} chip={cssOf(pressureBands[band].colour)} />
       <Figure label="Skin rises" value={(row?.skinMaxDisplacementMm ?? 0).toFixed(1)} unit="mm" />
-      <Figure label="Simulated time" value={(frame.value?.timeS ?? row?.timeS ?? 0).toFixed(1)} unit="s" />
+      <Figure label="Simulated time" value={(timeShown.value ?? row?.timeS ?? 0).toFixed(1)} unit="s" />
       <Zones />
       {all.length > 1 && (
         <>
-          <Plot title="Volume" unit="mL" times={times} now={frame.value?.timeS} onPick={pick} lines={[{ name: "injected", colour: "#0b6e6e", values: all.map(({ injectedMl }) => injectedMl) }]} />
-          <Plot title="Highest pressure" unit="mmHg" times={times} now={frame.value?.timeS} onPick={pick} lines={[{ name: "pressure", colour: "#a8321f", values: all.map(({ maxPressurePa }) => maxPressurePa * mmHgPerPa) }]} />
-          <Plot title="Skin rises" unit="mm" times={times} now={frame.value?.timeS} onPick={pick} lines={[{ name: "skin", colour: "#34507a", values: all.map(({ skinMaxDisplacementMm }) => skinMaxDisplacementMm) }]} />
+          <Plot title="Volume" unit="mL" times={times} now={timeShown.value} onPick={pick} lines={[{ name: "injected", colour: "#0b6e6e", values: all.map(({ injectedMl }) => injectedMl) }]} />
+          <Plot title="Highest pressure" unit="mmHg" times={times} now={timeShown.value} onPick={pick} lines={[{ name: "pressure", colour: "#a8321f", values: all.map(({ maxPressurePa }) => maxPressurePa * mmHgPerPa) }]} />
+          <Plot title="Skin rises" unit="mm" times={times} now={timeShown.value} onPick={pick} lines={[{ name: "skin", colour: "#34507a", values: all.map(({ skinMaxDisplacementMm }) => skinMaxDisplacementMm) }]} />
         </>
       )}
     </aside>

@@ -11,7 +11,6 @@ import { writePlan } from "../plan/plan_file";
 import { attempt, busy, plan, scan, scanFile, tell } from "../plan/state";
 import { liveSite, tool } from "../plan/tools";
 import { save, seriesCsv, stateClass, stateWord, surfaceObj } from "../run/exports";
-import { openFolder } from "../run/recorded";
 import { close, command, create as createSimulation, hasResult, inject, isRunning, isUnderWay, open, recorded, rows, simulation, state } from "../run/run";
 import { FileButton, NumberField, Section, SelectField } from "./fields";
 import { distance, quantity, shownScene } from "./stage_state";
@@ -130,12 +129,15 @@ function Recorded() {
   return (
     <Section title="Open a run">
       <div class="field" onFocusCapture={() => void load()} onPointerEnter={() => void load()}>
-        <SelectField label="Of the daemon" value={recorded.value ? "" : simulation.value?.name ?? ""} onChange={(value) => {
+        <SelectField label="Of the daemon" value={known.value.some(({ name }) => name === simulation.value?.name) ? simulation.value!.name : ""} onChange={(value) => {
           const next = known.value.find(({ name }) => name === value);
           if (next) open(next);
         }} options={[{ value: "", label: "Choose…" }, ...known.value.map((one) => ({ value: one.name, label: `${one.displayName || one.name.split("/")[1]} · ${stateWord(one)} · ${(one.summary?.injectedMl ?? 0).toFixed(1)} mL` }))]} />
       </div>
-      <FileButton label="Result folder…" folder onFiles={(files) => void attempt("Reading the results", (progress) => openFolder(files, progress))} />
+      <FileButton label="Result folder…" folder onFiles={(files) => void attempt("Reading the results", async (progress) => {
+        const { openFolder } = await import("../run/recorded"); // and with it the toolkit's reader
+        await openFolder(files, progress);
+      })} />
     </Section>
   );
 }

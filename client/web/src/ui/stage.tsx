@@ -1,32 +1,16 @@
 // The picture: the face, what a click does on it, the scalar bar, the probe, before and after.
 import { effect } from "@preact/signals";
+import { countPictures } from "./picture_rate";
 import { useEffect, useRef } from "preact/hooks";
 import { brushMm, tool, toolHint } from "../plan/tools";
-import { frame, meshes } from "../run/run";
+import { hasFrame, meshes } from "../run/run";
 import { FaceScene } from "../scene/face_scene";
 import { bindFace, bindFrame, bindMarkers, bindPatch } from "./stage_bindings";
 import { useCursor } from "./stage_cursor";
-import { compare, map, probe, quantity, rate, shownScene, split } from "./stage_state";
+import { compare, map, probe, quantity, shownScene, split } from "./stage_state";
 import { ScalarBar } from "./scalar_bar";
 import { ViewTools } from "./view_tools";
 
-/** Different frames that became pictures, each second. */
-function countPictures(scene: FaceScene, element: HTMLElement): () => void {
-  let [shown, last, total] = [0, frame.value, 0];
-  scene.viewport.onRendered = () => {
-    if (frame.value === last || frame.value === undefined) return;
-    last = frame.value;
-    shown += 1;
-    element.dataset["pictures"] = String((total += 1));
-  };
-  let since = performance.now();
-  const timer = setInterval(() => {
-    const now = performance.now();
-    rate.value = (1000 * shown) / (now - since);
-    [shown, since] = [0, now];
-  }, 1000);
-  return () => clearInterval(timer);
-}
 
 function Probe() {
   const now = probe.value;
@@ -81,7 +65,7 @@ export function Stage() {
       {comparing && <><span class="tag tag-before">Before</span><span class="tag tag-after">After</span></>}
       {mode === "slider" && <Slider />}
       {hint && <div class="tool-hint" role="status">{hint}{tool.value.kind === "paint" && ` (${brushMm.value} mm)`}<button type="button" class="link" onClick={() => (tool.value = { kind: "turn" })}>Done</button></div>}
-      {quantity.value !== "none" && map.value && meshes.value && frame.value && <ScalarBar map={map.value} quantity={quantity.value} />}
+      {quantity.value !== "none" && map.value && meshes.value && hasFrame.value && <ScalarBar map={map.value} quantity={quantity.value} />}
       <Probe />
       <ViewTools />
     </div>

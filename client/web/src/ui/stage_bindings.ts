@@ -36,19 +36,26 @@ function paintedZone(vertex: number): Rgb | undefined {
   return undefined;
 }
 
+/** A painted zone as it is in the plan, at once; others as the daemon has placed them. */
+function zoneColour(vertex: number): Rgb | undefined {
+  const placed = zonePreview.value?.[vertex] ?? 0;
+  return paintedZone(vertex) ?? (placed >= 1 ? zoneColours[(Math.round(placed) - 1) % zoneColours.length] : undefined);
+}
+
 export function bindPatch(scene: FaceScene): End {
+  let lookedAt: unknown;
   const patch = effect(() => {
     const shown = step.value !== "run" && step.value !== "face";
-    scene.setPatch(shown ? modelMeshes.value?.get("skin") : undefined, () => undefined);
-    if (shown && modelMeshes.value && untracked(() => frame.value === undefined)) lookAtRegion();
+    const skin = shown ? modelMeshes.value?.get("skin") : undefined;
+    untracked(() => {
+      scene.setPatch(skin, zoneColour);
+      if (skin && skin !== lookedAt) lookAtRegion();
+      if (skin) lookedAt = skin;
+    });
   });
   const colours = effect(() => {
-    const placed = zonePreview.value;
-    void step.value;
-    scene.colourPatch((vertex) => {
-      const zone = placed?.[vertex] ?? 0;
-      return paintedZone(vertex) ?? (zone >= 1 ? zoneColours[(Math.round(zone) - 1) % zoneColours.length] : undefined);
-    });
+    void [zonePreview.value, zones.value];
+    scene.colourPatch(zoneColour);
   });
   const layers = effect(() => {
     const tissue = showLayers.value && step.value === "tissue" ? modelMeshes.value?.get("tissue") : undefined;
@@ -116,6 +123,7 @@ export function bindFrame(scene: FaceScene): End {
   const show = (): void => {
     due = 0;
     scene.show(frame.value, quantity.value);
+    scene.viewport.render(); // in this refresh, not the next
   };
   const end = effect(() => {
     void [frame.value, quantity.value, meshes.value];

@@ -14,6 +14,10 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
     const outer = element.parentElement!;
     let [painting, downX, downY, due] = [false, 0, 0, 0];
 
+    const leave = (): void => {
+      cancelAnimationFrame(due);
+      probe.value = undefined;
+    };
     const paint = (event: PointerEvent): void => {
       const hit = shownScene.value?.hitPatch(event.clientX, event.clientY);
       if (hit) dab(hit.point);
@@ -35,6 +39,7 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
         return;
       }
       if (event.buttons !== 0 || frame.value === undefined) return;
+      if (!(event.target as HTMLElement).closest(".view")) return leave();
       const { clientX, clientY } = event;
       cancelAnimationFrame(due);
       due = requestAnimationFrame(() => {
@@ -53,10 +58,6 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
       if (Math.hypot(event.clientX - downX, event.clientY - downY) > clickPixels) return;
       const hit = shownScene.value?.hit(event.clientX, event.clientY);
       if (hit) click(hit.point);
-    };
-    const leave = (): void => {
-      cancelAnimationFrame(due);
-      probe.value = undefined;
     };
     // Before the toolkit hears of it: a stroke of the brush must not turn the face.
     outer.addEventListener("pointerdown", down, true);

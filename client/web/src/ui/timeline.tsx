@@ -1,11 +1,11 @@
 // Back and forth through the frames that came.
-import { connection, frame, hasResult, lookAt, lookedAt, rows, skipped, store } from "../run/run";
+import { connection, frame, hasResult, lookAt, lookedAt, rows, skipped, store, timeShown } from "../run/run";
 import { rate } from "./stage_state";
 
 export function Timeline() {
-  if (!frame.value) return null;
+  if (timeShown.value === undefined) return null;
   const end = Math.max(store.latest?.timeS ?? 0, rows.value.at(-1)?.timeS ?? 0);
-  const now = frame.value.timeS;
+  const now = timeShown.value;
   const following = lookedAt.value === undefined;
   return (
     <div class="timeline">
@@ -13,8 +13,8 @@ export function Timeline() {
         onInput={(event) => lookAt(Number(event.currentTarget.value))} />
       <output>{now.toFixed(2)} s</output>
       <button type="button" class="button small" aria-pressed={following} onClick={() => lookAt(undefined)}>Newest</button>
-      {frame.value.preview && <span class="tag-inline">Preview</span>}
-      <span class="quiet rate" title={`${skipped.value} frames were left out`}>{connection.value === "live" ? `${rate.value.toFixed(0)} pictures/s` : `${store.frames.length} frames`}</span>
+      {frame.peek()?.preview && <span class="tag-inline">Preview</span>}
+      <span class="quiet rate" title={`${skipped.peek()} frames were left out`}>{connection.value === "live" ? `${rate.value.toFixed(0)} pictures/s` : `${store.frames.length} frames`}</span>
     </div>
   );
 }

@@ -1,7 +1,7 @@
 // Buttons on the picture: where to look from, what is coloured, before and after.
 import { axesOf } from "../plan/landmarks";
 import { chart, modelMeshes, plan, region } from "../plan/state";
-import { frame, hasResult } from "../run/run";
+import { hasFrame, hasResult } from "../run/run";
 import { faceView, regionView, type View } from "../scene/views";
 import { compare, distance, quantity, shownScene, step, type Compare } from "./stage_state";
 import { Segmented } from "./fields";
@@ -37,7 +37,7 @@ export function ViewTools() {
         <button type="button" class="button small" onClick={() => lookAtFace("left")}>Left</button>
         {chart.value && <button type="button" class="button small" onClick={lookAtRegion}>Region</button>}
       </div>
-      {frame.value && step.value === "run" && <Segmented label="Colour by" value={quantity.value} options={colours} onChange={(value) => (quantity.value = value)} />}
+      {hasFrame.value && step.value === "run" && <Segmented label="Colour by" value={quantity.value} options={colours} onChange={(value) => (quantity.value = value)} />}
       {hasResult.value && step.value === "run" && (
         <Segmented<Compare> label="Compare" value={compare.value} onChange={(value) => (compare.value = value)}
           options={[{ value: "after", label: "After" }, { value: "side", label: "Side by side" }, { value: "slider", label: "Slider" }]} />

@@ -47,16 +47,17 @@ export class System {
     await gone;
   }
 
-  async startGateway(): Promise<void> {
+  async startGateway(port = "0"): Promise<void> {
     const portFile = join(this.folder, "gateway-port");
-    this.gateway = spawn(process.execPath, [join(built, "gateway.mjs"), "--listen", "127.0.0.1:0", "--daemon", `127.0.0.1:${this.daemonPort}`, "--port-file", portFile], { stdio: ["ignore", "ignore", "inherit"] });
+    rmSync(portFile, { force: true });
+    this.gateway = spawn(process.execPath, [join(built, "gateway.mjs"), "--listen", `127.0.0.1:${port}`, "--daemon", `127.0.0.1:${this.daemonPort}`, "--port-file", portFile], { stdio: ["ignore", "ignore", "inherit"] });
     this.address = `http://127.0.0.1:${await until("the gateway's port", () => portIn(portFile))}/`;
   }
 
   async startBrowser(): Promise<void> {
     this.browser = await chromium.launch({
       executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
-      args: ["--no-sandbox", "--disable-dev-shm-usage", "--ignore-gpu-blocklist", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--enable-precise-memory-info", "--js-flags=--expose-gc"],
+      args: ["--no-sandbox", "--disable-dev-shm-usage", "--ignore-gpu-blocklist", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-rasterization", "--enable-precise-memory-info", "--js-flags=--expose-gc"],
     });
   }
 

@@ -5,6 +5,8 @@ import { Simulation_State, type Simulation } from "@wire/simulation_pb";
 import { simulations } from "../api/client";
 import { toProblem } from "../api/errors";
 import { stateClass, stateWord } from "../run/exports";
+import { openExisting } from "../run/run";
+import { step } from "../ui/stage_state";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { Thumbnails } from "./thumbnails";
 
@@ -81,6 +83,10 @@ function Entry({ card: { simulation, stepsPerS } }: { card: Card }) {
           <div><dt>Viewers</dt><dd>{simulation.viewers}</dd></div>
         </dl>
       </div>
+      <a href="#plan" onClick={() => {
+        step.value = "run";
+        void openExisting(simulation);
+      }}>Open in the planner</a>
       {simulation.state === Simulation_State.FAILED && <p class="complaint">{simulation.reason}</p>}
     </article>
   );

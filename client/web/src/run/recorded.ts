@@ -7,7 +7,8 @@ import { SeriesRowSchema, SimulationSchema, type SeriesRow } from "@wire/simulat
 import type { WireArray } from "../api/arrays";
 import type { Mesh } from "../api/meshes";
 import type { Frame } from "../api/watch";
-import { close, faceMesh, lookAt, meshes, recorded, rows, simulation, store } from "./run";
+import { close, faceMesh, lookAt, meshes, recorded, rows, runAxes, simulation, store } from "./run";
+import type { Point } from "../scene/surface_geometry";
 
 interface Surface {
   mesh: Mesh;
@@ -92,7 +93,9 @@ export async function openFolder(files: File[], progress: (share: number) => voi
     progress((index + 1) / times.length);
   }
   const [series, summary] = await Promise.all([byName.get("series.csv")?.text(), byName.get("summary.json")?.text()]);
+  const up = (JSON.parse((await byName.get("run.json")?.text()) ?? "{}") as { up?: Point }).up;
   batch(() => {
+    if (up) runAxes.value = { up, left: [0, 0, 0], forward: [0, 0, 0] };
     faceMesh.value = mesh;
     recorded.value = collection.webkitRelativePath.split("/")[0] || "recorded run";
     rows.value = series === undefined ? [] : parseSeries(series);

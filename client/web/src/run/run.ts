@@ -2,13 +2,15 @@
 import { batch, computed, signal } from "@preact/signals";
 import { Code, ConnectError } from "@connectrpc/connect";
 import { Simulation_State, type Injection, type SeriesRow, type Simulation } from "@wire/simulation_pb";
-import { newId, simulations } from "../api/client";
+import { newId, patients, simulations } from "../api/client";
 import { toProblem } from "../api/errors";
 import type { Mesh } from "../api/meshes";
 import { watch, type Frame, type Listener } from "../api/watch";
 import { simulationSpec } from "../plan/actions";
 import { attempt, modelIsCurrent, plan, tell, violations } from "../plan/state";
 import { toPlanFields } from "../plan/violations";
+import { axesOf } from "../plan/landmarks";
+import type { Axes } from "../scene/views";
 import { FrameStore } from "./frame_store";
 
 export const simulation = signal<Simulation | undefined>(undefined);
@@ -24,6 +26,8 @@ export const skipped = signal(0);
 export const store = new FrameStore();
 /** "scan" or, without one, "skin" */
 export const faceMesh = signal("scan");
+/** the head's axes of a run that is opened, where its model or its folder has them */
+export const runAxes = signal<Axes | undefined>(undefined);
 /** a folder of results on this machine */
 export const recorded = signal("");
 
@@ -75,7 +79,7 @@ export function close(): void {
   store.clear();
   batch(() => {
     [simulation.value, frame.value, meshes.value, lookedAt.value, recorded.value] = [undefined, undefined, undefined, undefined, ""];
-    timeShown.value = undefined;
+    [timeShown.value, runAxes.value] = [undefined, undefined];
     [rows.value, skipped.value, connection.value] = [[], 0, "idle"];
   });
 }
@@ -129,6 +133,17 @@ export function open(next: Simulation, face = "scan"): void {
   close();
   simulation.value = next;
   void follow(next.name, face);
+}
+
+/** Shows one that this page has not begun, upright as its model says. */
+export async function openExisting(next: Simulation): Promise<void> {
+  open(next);
+  try {
+    const { spec } = await patients.getModel({ name: (await simulations.getSimulation({ name: next.name })).spec?.model ?? "" });
+    if (spec?.geometry.case === "scanRegion") runAxes.value = axesOf(spec.geometry.value.landmarksMm, spec.geometry.value.axes);
+  } catch {
+    // Its model may be gone; its results are not.
+  }
 }
 
 const planFace = (): string => (plan.value.model?.geometry.case === "scanRegion" ? "scan" : "skin");

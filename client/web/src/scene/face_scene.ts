@@ -9,6 +9,7 @@ import { Markers } from "./markers";
 import { Surface } from "./surface";
 import { castRay, valueAt, type Hit, type Point } from "./surface_geometry";
 import { Viewport } from "./viewport";
+import { liftView, type Axes, type View } from "./views";
 
 export interface Probe {
   point: Point;
@@ -128,6 +129,16 @@ export class FaceScene {
       colourFace(this.face, values === undefined ? "none" : quantity, this.numbers, this.distance, this.running.map);
     }
     this.viewport.request();
+  }
+
+  /** The largest displacement shown [mm]. */
+  get lift(): number {
+    return this.numbers === undefined ? 0 : largestOf(this.numbers.moved);
+  }
+
+  liftView(axes: Axes): View | undefined {
+    if (!this.face || !this.numbers) return undefined;
+    return liftView(this.face.points, this.face.normals, this.numbers.moved, axes);
   }
 
   hit(clientX: number, clientY: number): Hit | undefined {

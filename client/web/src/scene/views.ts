@@ -51,3 +51,19 @@ export function regionView(skin: Mesh, axes: Axes, flat: boolean): View {
   const direction = unit(outward.map((v, c) => v + 0.45 * axes.forward[c]) as Point);
   return { focus: centre, direction, up: axes.up, halfHeight: Math.max(88, 2.1 * Math.max(...half)) };
 }
+
+/** From outside of where the skin has moved, weighted by how far. */
+export function liftView(points: Float32Array, normals: Float32Array, moved: Float32Array, axes: Axes): View {
+  const focus: Point = [0, 0, 0];
+  const outward: Point = [0, 0, 0];
+  let total = 0;
+  for (let k = 0; k < moved.length; ++k) {
+    total += moved[k];
+    for (let c = 0; c < 3; ++c) {
+      focus[c] += moved[k] * points[3 * k + c];
+      outward[c] += moved[k] * normals[3 * k + c];
+    }
+  }
+  const direction = unit(unit(outward).map((v, c) => v + 0.35 * axes.forward[c]) as Point);
+  return { focus: focus.map((v) => v / (total || 1)) as Point, direction, up: axes.up, halfHeight: 92 };
+}

@@ -3,6 +3,7 @@ import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { setToken, token } from "../api/client";
 import { Dashboard } from "../dashboard/dashboard";
+import { openSample } from "../plan/actions";
 import { notice, plan } from "../plan/state";
 import { Planner } from "./planner";
 
@@ -31,6 +32,11 @@ export function App() {
   useEffect(() => {
     const turn = (): void => void (page.value = location.hash);
     window.addEventListener("hashchange", turn);
+    if (location.hash === "#sample") {
+      history.replaceState(null, "", "#plan");
+      turn();
+      void openSample();
+    }
     return () => window.removeEventListener("hashchange", turn);
   }, []);
   const onDashboard = page.value === "#dashboard";

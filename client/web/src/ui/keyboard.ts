@@ -16,10 +16,11 @@ export function onKey(event: KeyboardEvent): void {
   const target = event.target as HTMLElement;
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "Escape") tool.value = { kind: "turn" };
-  if (target.closest("input, select, textarea, dialog")) return;
-  const wasButton = target.closest("button, a, [role=button]") !== null;
+  if (target.closest("input[type=number], input[type=password], select, dialog")) return;
+  const itsOwn = event.key === " " ? "button, a, input" : event.key.startsWith("Arrow") || event.key === "End" ? "input[type=range]" : "";
+  if (itsOwn && target.closest(itsOwn)) return;
   if (/^[1-4]$/.test(event.key)) step.value = steps[Number(event.key) - 1];
-  else if (event.key === " " && !wasButton) void runOrPause();
+  else if (event.key === " ") void runOrPause();
   else if (event.key === "ArrowLeft" && hasResult.value) stepThroughTime(-1);
   else if (event.key === "ArrowRight" && hasResult.value) stepThroughTime(1);
   else if (event.key === "End") lookAt(undefined);

@@ -11,11 +11,14 @@ import { writePlan } from "../plan/plan_file";
 import { attempt, busy, plan, scan, scanFile, tell } from "../plan/state";
 import { liveSite, tool } from "../plan/tools";
 import { save, seriesCsv, stateClass, stateWord, surfaceObj } from "../run/exports";
-import { close, command, create as createSimulation, hasResult, inject, isRunning, isUnderWay, open, recorded, rows, simulation, state } from "../run/run";
+import { close, command, create as createSimulation, hasResult, inject, isRunning, isUnderWay, openExisting, recorded, rows, simulation, state } from "../run/run";
 import { FileButton, NumberField, Section, SelectField } from "./fields";
 import { distance, quantity, shownScene } from "./stage_state";
 
 const more = signal({ zone: "", volumeMl: 0.5 as number | undefined, rateMlPerS: 1 as number | undefined });
+
+/** A plan needs a face, unless it is of a plate. */
+const canRun = (): boolean => scan.value !== undefined || plan.value.model?.geometry.case === "square";
 
 async function run(): Promise<void> {
   if (await build()) await createSimulation(true);
@@ -27,7 +30,7 @@ function Controls() {
   return (
     <Section title="Simulation" aside={<span class={`state ${stateClass(simulation.value)}`}>{recorded.value ? "Recorded" : stateWord(simulation.value)}</span>}>
       <div class="row">
-        {ready && <button type="button" class="button primary grow" disabled={busy.value !== undefined} onClick={() => void run()}>▶ Run</button>}
+        {ready && <button type="button" class="button primary grow" disabled={busy.value !== undefined || !canRun()} onClick={() => void run()}>▶ Run</button>}
         {now === Simulation_State.READY && <button type="button" class="button primary grow" onClick={() => void command("startSimulation")}>▶ Start</button>}
         {isRunning.value && <button type="button" class="button primary grow" onClick={() => void command("pauseSimulation")}>❚❚ Pause</button>}
         {now === Simulation_State.PAUSED && <button type="button" class="button primary grow" onClick={() => void command("resumeSimulation")}>▶ Resume</button>}
@@ -106,7 +109,7 @@ function Exports() {
   return (
     <Section title="Take home">
       <div class="row wrap">
-        <button type="button" class="button" disabled={!scan.value && plan.value.model?.geometry.case !== "square"} onClick={() => save(`${name}.json`, writePlan(plan.value, scanFile.value.name, scanFile.value.unit))}>Plan</button>
+        <button type="button" class="button" disabled={!canRun()} onClick={() => save(`${name}.json`, writePlan(plan.value, scanFile.value.name, scanFile.value.unit))}>Plan</button>
         <button type="button" class="button" disabled={rows.value.length === 0} onClick={() => save(`${name}.csv`, seriesCsv(rows.value))}>CSV</button>
         <button type="button" class="button" onClick={() => void savePicture()}>Picture</button>
         <button type="button" class="button" disabled={!hasResult.value} onClick={saveMesh}>Mesh</button>
@@ -131,7 +134,7 @@ function Recorded() {
       <div class="field" onFocusCapture={() => void load()} onPointerEnter={() => void load()}>
         <SelectField label="Of the daemon" value={known.value.some(({ name }) => name === simulation.value?.name) ? simulation.value!.name : ""} onChange={(value) => {
           const next = known.value.find(({ name }) => name === value);
-          if (next) open(next);
+          if (next) void openExisting(next);
         }} options={[{ value: "", label: "Choose…" }, ...known.value.map((one) => ({ value: one.name, label: `${one.displayName || one.name.split("/")[1]} · ${stateWord(one)} · ${(one.summary?.injectedMl ?? 0).toFixed(1)} mL` }))]} />
       </div>
       <FileButton label="Result folder…" folder onFiles={(files) => void attempt("Reading the results", async (progress) => {

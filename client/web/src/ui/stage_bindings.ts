@@ -3,14 +3,14 @@ import { effect, untracked } from "@preact/signals";
 import { locate, pointOf } from "../plan/landmarks";
 import { chart, model, modelMeshes, plan, region, scanMesh, zones } from "../plan/state";
 import { liveSite, tool } from "../plan/tools";
-import { faceMesh, frame, meshes } from "../run/run";
+import { faceMesh, frame, meshes, simulation } from "../run/run";
 import { zoneColours, type Rgb } from "../scene/colour_maps";
 import type { FaceScene } from "../scene/face_scene";
 import type { Ball, Line } from "../scene/markers";
 import { distanceOf, type Point } from "../scene/surface_geometry";
 import { layerShown, showLayers } from "./tissue_panel";
 import { distance, quantity, step } from "./stage_state";
-import { lookAtFace, lookAtRegion } from "./view_tools";
+import { lookAtFace, lookAtLift, lookAtRegion } from "./view_tools";
 import { zonePreview } from "./zone_preview";
 
 type End = () => void;
@@ -45,10 +45,10 @@ function zoneColour(vertex: number): Rgb | undefined {
 export function bindPatch(scene: FaceScene): End {
   let lookedAt: unknown;
   const patch = effect(() => {
-    const shown = step.value !== "run" && step.value !== "face";
-    const skin = shown ? modelMeshes.value?.get("skin") : undefined;
+    const skin = step.value === "face" ? undefined : modelMeshes.value?.get("skin");
+    const shown = step.value !== "run";
     untracked(() => {
-      scene.setPatch(skin, zoneColour);
+      scene.setPatch(shown ? skin : undefined, zoneColour);
       if (skin && skin !== lookedAt) lookAtRegion();
       if (skin) lookedAt = skin;
     });
@@ -120,9 +120,16 @@ export function bindMarkers(scene: FaceScene): End {
 /** A frame is worked on once a refresh of the screen, the newest: what came between is only kept. */
 export function bindFrame(scene: FaceScene): End {
   let due = 0;
+  let lookedAt: unknown;
   const show = (): void => {
     due = 0;
     scene.show(frame.value, quantity.value);
+    // A run that this page has not begun is shown from where it moves most.
+    const own = model.peek() !== undefined && simulation.peek()?.spec?.model === model.peek()!.name;
+    if (frame.value && scene.mesh !== lookedAt && !own && scene.lift > 0.2) {
+      lookedAt = scene.mesh;
+      lookAtLift();
+    }
     scene.viewport.render(); // in this refresh, not the next
   };
   const end = effect(() => {

@@ -1,7 +1,7 @@
 // Buttons on the picture: where to look from, what is coloured, before and after.
 import { axesOf } from "../plan/landmarks";
 import { chart, modelMeshes, plan, region } from "../plan/state";
-import { hasFrame, hasResult } from "../run/run";
+import { hasFrame, hasResult, runAxes } from "../run/run";
 import { faceView, regionView, type View } from "../scene/views";
 import { compare, distance, quantity, shownScene, step, type Compare } from "./stage_state";
 import { Segmented } from "./fields";
@@ -10,11 +10,17 @@ import type { Quantity } from "../scene/colour_maps";
 function look(view: View): void {
   shownScene.value?.viewport.lookAt(view.focus, view.direction, view.up, view.halfHeight);
 }
-const axes = () => axesOf(region.value?.landmarksMm ?? {}, region.value?.axes);
+const axes = () => runAxes.value ?? axesOf(region.value?.landmarksMm ?? {}, region.value?.axes);
 
 export function lookAtFace(turn: "front" | "left" | "right"): void {
   const mesh = shownScene.value?.mesh;
   if (mesh) look(faceView(mesh, axes(), turn));
+}
+
+/** Where the skin has moved. */
+export function lookAtLift(): void {
+  const view = shownScene.value?.liftView(axes());
+  if (view) look(view);
 }
 
 export function lookAtRegion(): void {

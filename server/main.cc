@@ -43,9 +43,18 @@ absl::Status write_port(const std::string& path, int port) {
 }
 
 BackendOptions backend_options(const Options& options) {
-  BackendOptions backend{options.workers,     options.max_simulations,
-                         options.keepalive_s, options.keepalive_timeout_s,
-                         options.max_viewers, {}};
+  BackendOptions backend;
+  backend.workers = options.workers;
+  backend.max_running = options.max_running;
+  backend.sessions.simulations = options.max_simulations;
+  backend.sessions.simulations_per_tenant = options.max_simulations_per_tenant;
+  backend.sessions.memory_bytes = options.simulation_memory_mb * 1'000'000;
+  backend.sizes.upload_bytes = options.max_upload_mb * 1'000'000;
+  backend.sizes.hexahedra = options.max_hexahedra;
+  backend.sizes.film_cells = options.max_film_cells;
+  backend.keepalive_s = options.keepalive_s;
+  backend.keepalive_timeout_s = options.keepalive_timeout_s;
+  backend.max_viewers = options.max_viewers;
   backend.checkpoints.interval_s = options.checkpoint_interval_s;
   backend.checkpoints.kept = options.checkpoints_kept;
   backend.checkpoints.most_bytes = options.checkpoint_space_mb * 1'000'000;

@@ -33,6 +33,7 @@ class CoupledFactor {
 
   /// B of the last factorise [m2] (n_cells, n_dofs).
   const Eigen::SparseMatrix<double>& derivative() const { return derivative_; }
+  const FactorAnalysis& analysis() const { return *analysis_; }
   bool has_compliance() const { return analysis_->n_cells() > 0; }
   /// C of the last factorise [m3/Pa] (n_cells, n_cells), symmetric. Dense route only.
   const Eigen::MatrixXd& compliance() const { return compliance_; }

@@ -76,6 +76,8 @@ class CoupledStep {
                 StepOutcome& outcome);
 
   int n_dofs() const { return tissue_ ? tissue_->tissue.n_dofs() : 0; }
+  /// Memory of the factor, the compliance, the matrices and the vectors, once steps are taken [B].
+  uint64_t memory_bytes() const;
   const TissueSetup* tissue() const { return tissue_.get(); }
   /// Mid-surface metric of a film for a state.
   film::FilmMetric film_metric(const SimulationState& state, int film) const;

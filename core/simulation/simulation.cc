@@ -267,6 +267,9 @@ absl::Status Simulation::inject(const InjectionSpec& injection) {
 int Simulation::n_hexahedra() const {
   return impl_->model->geometry.grid.n_hexahedra();
 }
+uint64_t Simulation::memory_bytes() const {
+  return impl_->stepper->memory_bytes();
+}
 int Simulation::n_dofs() const {
   return impl_->stepper->n_dofs();
 }

@@ -127,6 +127,9 @@ class Simulation {
   int n_hexahedra() const;
   int n_film_cells() const;
   int n_dofs() const;
+  /// What it takes in memory while it runs, its model left out: an estimate, within a factor of two for models of a
+  /// thousand hexahedra and more [B].
+  uint64_t memory_bytes() const;
 
   /// The meshes at rest: "skin", "scan" (where the model has one), "film/<name>" for each film, "tissue".
   std::vector<MeshTopology> topology() const;

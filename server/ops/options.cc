@@ -1,5 +1,7 @@
 #include "server/ops/options.h"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdlib>
@@ -131,9 +133,15 @@ void check_listen(const Options& options, FieldViolations& violations) {
   }
 }
 
+uint64_t machine_memory_mb() {
+  return static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGE_SIZE)) / 1'000'000;
+}
+
 }  // namespace
 
-Options::Options() : workers(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u))) {}
+Options::Options()
+    : workers(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u))),
+      simulation_memory_mb(std::max<uint64_t>(64, machine_memory_mb() / 2)) {}
 
 std::vector<Setting> settings_of(Options& options) {
   std::vector<Setting> settings = {
@@ -147,6 +155,15 @@ std::vector<Setting> settings_of(Options& options) {
       {"data", "DIR", "Directory of the store: patients, scans, models, results; made when missing", &options.data},
       {"workers", "N", "Threads that run simulations; default: the number of cores", &options.workers, 1, 256},
       {"max-simulations", "N", "Simulations that may exist without having ended", &options.max_simulations, 1, 100000},
+      {"max-simulations-per-tenant", "N", "and of each tenant", &options.max_simulations_per_tenant, 1, 100000},
+      {"simulation-memory-mb", "MB",
+       "What simulations in memory may take together; default: half of the machine's memory",
+       &options.simulation_memory_mb, 64, 1e8},
+      {"max-upload-mb", "MB", "Size of a scan that is uploaded", &options.max_upload_mb, 1, 256},
+      {"max-hexahedra", "N", "Elements of a model", &options.max_hexahedra, 1, 200000},
+      {"max-film-cells", "N", "Cells of the grids of all films of a simulation", &options.max_film_cells, 1, 65536},
+      {"max-running", "N", "Simulations that share the workers; more wait in a queue until one of them ends or pauses",
+       &options.max_running, 1, 100000},
       {"max-viewers", "N", "Streams of frames that may be open at once", &options.max_viewers, 1, 1e6},
       {"keepalive-s", "SECONDS", "A client silent for so long is asked whether it is there", &options.keepalive_s, 0.1,
        86400},

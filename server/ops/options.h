@@ -21,6 +21,12 @@ struct Options {
   std::string data = "lipofill-data";
   int workers = 1;
   int max_simulations = 64;
+  int max_simulations_per_tenant = 64;
+  int max_running = 16;
+  uint64_t simulation_memory_mb = 4096;
+  uint64_t max_upload_mb = 256;
+  int max_hexahedra = 200'000;
+  int max_film_cells = 65'536;
   double keepalive_s = 30.0;
   double keepalive_timeout_s = 20.0;
   int max_viewers = 1000;

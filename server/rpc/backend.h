@@ -8,6 +8,7 @@
 #include "server/ops/metrics.h"
 #include "server/rpc/courier.h"
 #include "server/rpc/result_keeper.h"
+#include "server/rpc/size_limits.h"
 #include "server/sessions/model_cache.h"
 #include "server/sessions/operations.h"
 #include "server/sessions/session_manager.h"
@@ -21,7 +22,9 @@ namespace lipofill::server {
 
 struct BackendOptions {
   int workers = 1;
-  int max_simulations = 64;
+  int max_running = 16;
+  SessionBounds sessions;
+  SizeLimits sizes;
   /// A client that has been silent for so long is asked whether it is there, and dropped when it does not answer in
   /// time.
   double keepalive_s = 30.0;
@@ -39,9 +42,9 @@ struct Backend {
         scan_files(scans),
         checkpoint_files(checkpoints),
         metrics(the_metrics),
-        sessions(options.max_simulations),
+        sessions(options.sessions),
         keeper(the_store, checkpoints, sessions, options.checkpoints, the_metrics),
-        workers(options.workers) {}
+        workers(options.workers, static_cast<size_t>(options.max_running)) {}
 
   const BackendOptions options;
   Store& store;

@@ -7,9 +7,12 @@
 #include "server/rpc/names.h"
 #include "server/rpc/unary.h"
 #include "server/sessions/draining.h"
+#include "server/sessions/shortage.h"
 
 namespace lipofill::server {
 namespace {
+
+constexpr double kRetryDelayS = 10.0;
 
 absl::StatusOr<v1::WatchRequest> parse_request(const grpc::ByteBuffer& bytes) {
   grpc::ByteBuffer copy(bytes);
@@ -110,8 +113,8 @@ absl::Status FrameService::begin(grpc::CallbackServerContext* context, const grp
   if (!id.ok()) return id.status();
   std::shared_ptr<void> place = take_place();
   if (place == nullptr) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat("too many viewers are watching, the bound is ", backend_.options.max_viewers));
+    return shortage("TOO_MANY_VIEWERS", kRetryDelayS,
+                    absl::StrCat("too many viewers are watching, the bound is ", backend_.options.max_viewers));
   }
   stream = std::make_shared<WatchStream>(backend_.courier, backend_.metrics, request->known_topology_hash(),
                                          std::move(place));

@@ -131,7 +131,7 @@ grpc::ServerWriteReactor<v1::MeshSlice>* send_slices(Backend& backend, grpc::Cal
       stream->fail(made);
     }
   });
-  if (!taken) stream->fail(absl::ResourceExhaustedError("too many long calls are waiting"));
+  if (!taken) stream->fail(too_many_calls(backend));
   return stream;
 }
 

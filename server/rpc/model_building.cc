@@ -12,6 +12,7 @@
 #include "server/rpc/unary.h"
 #include "server/rpc/violation_prefix.h"
 #include "server/sessions/identifiers.h"
+#include "server/sessions/shortage.h"
 #include "server/store/sqlite_store.h"
 #include "spdlog/spdlog.h"
 
@@ -71,6 +72,7 @@ absl::Status check_spec(Backend& backend, const std::string& patient, const v1::
   const auto scans = scans_of(patient, request.spec());
   violations.absorb("spec", scans.status());
   if (!violations.empty()) return violations.to_status();
+  if (absl::Status small = check_size(request.spec(), backend.options.sizes); !small.ok()) return small;
   const absl::Status skin = check_complete(backend, patient, scans->skin, "spec.scan_region.scan");
   if (!skin.ok()) return skin;
   return check_complete(backend, patient, scans->bone, "spec.scan_region.bone_scan");
@@ -210,7 +212,8 @@ absl::StatusOr<OperationView> start_model_build(Backend& backend, const Principa
       id);
   if (!taken) {
     backend.operations.drop(id);
-    return absl::ResourceExhaustedError(
+    return shortage(
+        "TOO_MANY_BUILDS", 5.0,
         absl::StrCat("too many models are waiting to be built, the bound is ", backend.builds.max_queued()));
   }
   spdlog::info("operations/{} builds a model of {}", id, request.parent());

@@ -20,7 +20,6 @@
 namespace lipofill::server {
 namespace {
 
-constexpr uint64_t kMaxScanBytes = uint64_t{256} << 20;
 constexpr size_t kMaxChunkBytes = size_t{1} << 20;
 
 bool is_sha256(const std::string& text) {
@@ -28,11 +27,11 @@ bool is_sha256(const std::string& text) {
                                           [](char c) { return absl::ascii_isxdigit(static_cast<unsigned char>(c)); });
 }
 
-absl::Status check_request(const v1::CreateScanRequest& request) {
+absl::Status check_request(const v1::CreateScanRequest& request, uint64_t max_bytes) {
   FieldViolations violations;
   if (request.format() == v1::SCAN_FORMAT_UNSPECIFIED) violations.add("format", "is missing: OBJ, PLY or STL");
-  if (request.size_bytes() < 1 || request.size_bytes() > kMaxScanBytes) {
-    violations.add("size_bytes", absl::StrCat("is ", request.size_bytes(), ", must be in [1, ", kMaxScanBytes, "]"));
+  if (request.size_bytes() < 1 || request.size_bytes() > max_bytes) {
+    violations.add("size_bytes", absl::StrCat("is ", request.size_bytes(), ", must be in [1, ", max_bytes, "]"));
   }
   if (!is_sha256(request.sha256())) {
     violations.add("sha256", absl::StrCat("is \"", absl::CHexEscape(request.sha256().substr(0, 80)),
@@ -94,8 +93,7 @@ class UploadStream : public grpc::ServerReadReactor<v1::UploadScanRequest> {
       });
       Finish(to_grpc_status(done));
     });
-    if (!taken)
-      Finish(to_grpc_status(absl::ResourceExhaustedError("too many long calls are waiting; upload on later")));
+    if (!taken) Finish(to_grpc_status(too_many_calls(backend_)));
   }
 
   ScanUploads& uploads_;
@@ -128,7 +126,7 @@ absl::StatusOr<v1::Scan> ScanUploads::create(const Principal& caller, const v1::
   const auto patient = parse_patient_name(request.parent(), "parent");
   if (!patient.ok()) return patient.status();
   if (auto good = check_request_id(request.request_id()); !good.ok()) return good;
-  if (auto good = check_request(request); !good.ok()) return good;
+  if (auto good = check_request(request, backend_.options.sizes.upload_bytes); !good.ok()) return good;
   ScanRecord record;
   record.patient = *patient;
   record.id = make_id('s');

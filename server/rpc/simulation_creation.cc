@@ -70,6 +70,10 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
   simulation.mutable_spec()->ParseFromString(record.spec_message);
   *simulation.mutable_create_time() = to_timestamp(record.create_time_us);
   simulation.set_state(to_state(view != nullptr ? view->state : record.state));
+  if (view != nullptr && view->state == SimulationState::kRunning && view->queue_position > 0) {
+    simulation.set_state(v1::Simulation::QUEUED);
+    simulation.set_queue_position(static_cast<uint32_t>(view->queue_position));
+  }
   simulation.set_reason(view != nullptr ? view->reason : record.reason);
   if (view != nullptr) {
     *simulation.mutable_summary() = to_summary(*view);
@@ -165,10 +169,12 @@ absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const Princip
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) return show_made_before(backend, **earlier, request.start());
 
-  auto place = backend.sessions.reserve();
+  if (absl::Status small = check_size(request.spec(), backend.options.sizes); !small.ok()) return small;
+  auto place = backend.sessions.reserve("");
   if (!place.ok()) return place.status();
   auto simulation = make_simulation(backend, record->model, request.spec());
   if (!simulation.ok()) return simulation.status();
+  if (absl::Status room = place->claim((*simulation)->memory_bytes()); !room.ok()) return room;
   if (caller_has_left()) return absl::CancelledError("the caller left before the simulation was created");
   if (request.validate_only()) return show_checked(backend, *record, request.spec(), *std::move(simulation));
   const auto kept = backend.store.create_simulation(*record, key);

@@ -133,9 +133,11 @@ absl::Status bring_back(Backend& backend, const SimulationRecord& record) {
   if (!epoch.ok()) return epoch.status();
   spdlog::info("{} is {} and goes on from step {}{}", simulation_name(record.id), state_name(record.state), step,
                history->until_step > step ? absl::StrCat(", catching up to step ", history->until_step) : "");
-  backend.sessions.bring_back(std::make_shared<Session>(make_session_options(backend, record.id, *epoch, ground->spec),
-                                                        std::move(ground->simulation), backend.workers, backend.keeper,
-                                                        *std::move(history)));
+  const uint64_t bytes = ground->simulation->memory_bytes();
+  const auto session =
+      std::make_shared<Session>(make_session_options(backend, record.id, *epoch, ground->spec),
+                                std::move(ground->simulation), backend.workers, backend.keeper, *std::move(history));
+  backend.sessions.bring_back("", bytes, session);
   return absl::OkStatus();
 }
 

@@ -124,7 +124,7 @@ grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* export_tissue_deck(Backe
       stream->fail(made);
     }
   });
-  if (!taken) stream->fail(absl::ResourceExhaustedError("too many long calls are waiting"));
+  if (!taken) stream->fail(too_many_calls(backend));
   return stream;
 }
 

@@ -15,6 +15,7 @@
 #include "server/rpc/message_check.h"
 #include "server/rpc/status_mapping.h"
 #include "server/security/refusals.h"
+#include "server/sessions/shortage.h"
 
 namespace lipofill::server {
 
@@ -56,6 +57,13 @@ grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, const Req
   return reactor;
 }
 
+/// What a long call is told when too many wait already.
+inline absl::Status too_many_calls(const Backend& backend) {
+  constexpr double retry_delay_s = 2.0;
+  return shortage("TOO_MANY_CALLS", retry_delay_s,
+                  "too many long calls are waiting, the bound is " + std::to_string(backend.calls.max_queued()));
+}
+
 /// Answers a call from the pool for long calls.
 template <typename Request>
 grpc::ServerUnaryReactor* answer_later(grpc::CallbackServerContext* context, const Request* request, Backend& backend,
@@ -70,8 +78,7 @@ grpc::ServerUnaryReactor* answer_later(grpc::CallbackServerContext* context, con
     reactor->Finish(to_grpc_status(guarded(work)));
   });
   if (!taken) {
-    reactor->Finish(to_grpc_status(absl::ResourceExhaustedError("too many long calls are waiting, the bound is " +
-                                                                std::to_string(backend.calls.max_queued()))));
+    reactor->Finish(to_grpc_status(too_many_calls(backend)));
   }
   return reactor;
 }

@@ -41,7 +41,6 @@ Session::Session(SessionOptions options, std::unique_ptr<simulation::Simulation>
       simulation_(std::move(simulation)),
       epoch_(options_.epoch),
       history_(std::move(history)),
-      running_since_(Clock::now()),
       wall_before_s_(history_.wall_s) {
   const uint64_t step = simulation_->report().step;
   catching_up_ = !history_.injections.empty() || history_.until_step > step || history_.stop_reason.has_value();
@@ -96,8 +95,6 @@ void Session::carry_out_commands() {
 // ---- running
 
 void Session::run() {
-  running_since_ = Clock::now();
-  running_since_time_s_ = simulation_->report().time;
   set_state(SimulationState::kRunning, "");
   spdlog::info("simulations/{} runs from step {}", options_.id, view_.report.step);
   schedule();
@@ -113,8 +110,20 @@ void Session::schedule() {
   workers_.schedule(shared_from_this());
 }
 
+// Time in the queue is no time spent running, and real time begins with the first step.
+void Session::begin_clock() {
+  clock_runs_ = true;
+  running_since_ = Clock::now();
+  running_since_time_s_ = simulation_->report().time;
+}
+
+void Session::stop_clock() {
+  if (std::exchange(clock_runs_, false)) wall_before_s_ += seconds(Clock::now() - running_since_);
+}
+
 void Session::leave_running() {
-  if (view_.state == SimulationState::kRunning) wall_before_s_ += seconds(Clock::now() - running_since_);
+  stop_clock();
+  if (workers_.withdraw(*this)) scheduled_ = false;
 }
 
 WorkerPool::Next Session::take_turn() {
@@ -139,6 +148,7 @@ WorkerPool::Next Session::advance_slice() {
   while (takes_steps()) {
     if (catching_up_) catch_up();
     if (!takes_steps()) break;
+    if (!clock_runs_) begin_clock();
     const bool previews = preview_is_due() && !catching_up_;
     const bool waits = options_.real_time && !previews && !catching_up_ && due_time() > Clock::now();
     if (waits) return {WorkerPool::Next::kLater, due_time()};
@@ -193,6 +203,11 @@ void Session::finish(SimulationState state, const std::string& reason) {
     spdlog::error("simulations/{}: its result is lost: {}", options_.id, error.what());
     for (const auto& viewer : viewers_) viewer->close(absl::InternalError("the result of the simulation is lost"));
   }
+  let_go();
+}
+
+/// Of all that only a simulation that has not ended needs.
+void Session::let_go() {
   viewers_.clear();
   simulation_ = nullptr;
   preview_ = nullptr;

@@ -153,7 +153,10 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   void set_reason(std::string reason);
   void finish(SimulationState state, const std::string& reason);
   void conclude();
+  void let_go();
   absl::Status keep_result();
+  void begin_clock();
+  void stop_clock();
   void leave_running();
 
   void catch_up();
@@ -204,6 +207,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   std::optional<uint64_t> saved_step_;  ///< step of the last checkpoint
   std::vector<float> step_ms_;
   simulation::CostSum cost_;
+  bool clock_runs_ = false;
   Clock::time_point running_since_;
   double running_since_time_s_ = 0.0;  ///< simulated
   double wall_before_s_ = 0.0;

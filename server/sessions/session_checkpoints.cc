@@ -89,8 +89,7 @@ absl::Status Session::go_back(RestoreOrder& order, const RequestKey& request) {
   forget_pending(pending_series(0).size());
   saved_step_ = checkpoint.step;
   wall_before_s_ = checkpoint.wall_s;
-  running_since_ = Clock::now();
-  running_since_time_s_ = simulation_->report().time;
+  clock_runs_ = false;  // begins anew with the next step
   update_view();
   const auto epoch = sink_.begin_epoch(options_.id);
   epoch_ = epoch.ok() ? *epoch : epoch_ + 1;
@@ -105,8 +104,6 @@ absl::Status Session::go_back(RestoreOrder& order, const RequestKey& request) {
 void Session::go_on() {
   post([this] {
     set_reason(catching_up_ ? catching_up_text() : history_.note);
-    running_since_ = Clock::now();
-    running_since_time_s_ = simulation_->report().time;
     if (takes_steps() || catching_up_) schedule();
   });
 }
@@ -132,9 +129,7 @@ void Session::catch_up() {
   }
   if (!injections.empty() || step < history_.until_step) return;
   if (history_.stop_reason.has_value()) return finish(SimulationState::kStopped, *history_.stop_reason);
-  leave_running();
-  running_since_ = Clock::now();
-  running_since_time_s_ = simulation_->report().time;
+  stop_clock();  // real time begins here
   set_reason(history_.note);
   end_catching_up();
 }

@@ -173,11 +173,7 @@ void Session::abandon(std::function<absl::Status()> forget, Reply reply) {
       topology();
       last_frame_ = make_frame({}, true);
       for (const auto& viewer : viewers_) viewer->offer(last_frame_);
-      viewers_.clear();
-      simulation_ = nullptr;
-      preview_ = nullptr;
-      preview_frame_ = nullptr;
-      end_catching_up();
+      let_go();
       return absl::OkStatus();
     });
   });

@@ -61,8 +61,7 @@ void Session::update_view() {
   std::vector<simulation::ZoneReport> zones = simulation_->zone_reports();
   std::vector<simulation::LigamentReport> ligaments = simulation_->ligament_reports();
   double wall_s = wall_before_s_;
-  if (view_.state == SimulationState::kRunning)
-    wall_s += std::chrono::duration<double>(Clock::now() - running_since_).count();
+  if (clock_runs_) wall_s += std::chrono::duration<double>(Clock::now() - running_since_).count();
   const std::lock_guard lock(view_mutex_);
   view_.report = simulation_->report();
   view_.zones = std::move(zones);
@@ -83,6 +82,7 @@ SessionView Session::cached_view() const {
   const std::lock_guard lock(view_mutex_);
   SessionView view = view_;
   view.viewers = watching_;
+  view.queue_position = workers_.queue_position(*this);
   return view;
 }
 

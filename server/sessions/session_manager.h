@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -12,33 +13,45 @@
 
 namespace lipofill::server {
 
-/// The simulations in memory: those that have not ended. Their number is bounded.
-/// Checked by tests/unit/server/session_test.cc.
+/// What the simulations in memory may be and take together.
+struct SessionBounds {
+  int simulations = 64;
+  int simulations_per_tenant = 64;
+  uint64_t memory_bytes = uint64_t{8} << 30;
+};
+
+/// The simulations in memory: those that have not ended, but for those that are parked. Their number, of all and of
+/// each tenant, and what they take are bounded. Checked by tests/unit/server/session_manager_test.cc.
 class SessionManager {
  public:
-  explicit SessionManager(int max_sessions) : max_sessions_(max_sessions) {}
+  explicit SessionManager(const SessionBounds& bounds) : bounds_(bounds) {}
 
   /// Room for one more, given back when it is not used.
   class Place {
    public:
-    Place(Place&& other) noexcept : manager_(std::exchange(other.manager_, nullptr)) {}
+    Place(Place&& other) noexcept
+        : manager_(std::exchange(other.manager_, nullptr)), tenant_(std::move(other.tenant_)), bytes_(other.bytes_) {}
     Place& operator=(Place&&) = delete;
     ~Place();
+    /// Of memory, once it is known how much it will take. RESOURCE_EXHAUSTED naming the bound.
+    absl::Status claim(uint64_t bytes);
 
    private:
     friend class SessionManager;
-    explicit Place(SessionManager* manager) : manager_(manager) {}
+    Place(SessionManager* manager, std::string tenant) : manager_(manager), tenant_(std::move(tenant)) {}
     SessionManager* manager_;
+    std::string tenant_;
+    uint64_t bytes_ = 0;
   };
 
   /// RESOURCE_EXHAUSTED naming the bound; draining() once suspend_all() was called.
-  absl::StatusOr<Place> reserve();
+  absl::StatusOr<Place> reserve(const std::string& tenant);
   /// False once suspend_all() was called.
   [[nodiscard]] bool add(Place place, std::shared_ptr<Session> session);
   std::shared_ptr<Session> find(const std::string& id) const;
   void remove(const std::string& id);
-  /// Adds one that was there before the daemon was started again, whatever the bound, and lets it go on.
-  void bring_back(std::shared_ptr<Session> session);
+  /// Adds one that was there before the daemon was started again, whatever the bounds, and lets it go on.
+  void bring_back(const std::string& tenant, uint64_t bytes, std::shared_ptr<Session> session);
 
   /// Has every session keep its state; they go on meanwhile. Returns when all are done, with the first error.
   absl::Status checkpoint_all();
@@ -47,17 +60,31 @@ class SessionManager {
   void suspend_all();
   /// Figures of all, each as after its last step.
   std::vector<SessionView> cached_views() const;
+  std::vector<std::shared_ptr<Session>> all() const;
+  /// What they take, as far as it is known.
+  uint64_t memory_bytes() const;
 
  private:
-  std::map<std::string, std::shared_ptr<Session>> snapshot() const;
+  struct Entry {
+    std::shared_ptr<Session> session;
+    std::string tenant;
+    uint64_t bytes = 0;
+  };
   using Act = std::function<void(Session& session, Session::Done done)>;
   /// Has all sessions act, each in its own time, and waits for them; the first error.
   absl::Status ask_all(const Act& act) const;
 
-  const int max_sessions_;
+  // With the mutex held.
+  void take(const std::string& tenant);
+  void give_back(const std::string& tenant, uint64_t bytes);
+
+  const SessionBounds bounds_;
   mutable std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<Session>> sessions_;
-  int reserved_ = 0;
+  std::map<std::string, Entry> sessions_;
+  /// Of sessions and places that are reserved.
+  int n_taken_ = 0;
+  std::map<std::string, int> n_taken_by_;
+  uint64_t bytes_taken_ = 0;
   bool stopping_ = false;
 };
 

@@ -51,6 +51,7 @@ struct SessionView {
   double step_ms_median = 0.0;  ///< computing time of a step
   simulation::CostSum cost;     ///< of the steps taken in this daemon
   std::string state_hash;       ///< empty in a cached view of a live simulation
+  size_t queue_position = 0;    ///< while it waits to run: 1 is the next
   std::optional<PreviewView> preview;
   int viewers = 0;
 };

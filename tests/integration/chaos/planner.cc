@@ -259,7 +259,8 @@ void Planner::end_it() {
 
 v1::Simulation Planner::await_end(const std::string& name) {
   v1::Simulation simulation = get(name);
-  while (simulation.state() < v1::Simulation::SETTLED && !::testing::Test::HasFailure()) {
+  while ((simulation.state() < v1::Simulation::SETTLED || simulation.state() == v1::Simulation::QUEUED) &&
+         !::testing::Test::HasFailure()) {
     pause_for(5);
     simulation = get(name);
   }

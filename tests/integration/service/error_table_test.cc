@@ -83,6 +83,7 @@ std::vector<Row> patient_rows() {
       absent(patients + "GetModel", R"({"name":"patients/anna/models/none"})"),
       invalid(patients + "ListModels", R"({"parent":"patients/anna","readMask":"nose"})", {"read_mask.paths[0]"}),
       absent(patients + "DeleteModel", R"({"name":"patients/anna/models/none"})"),
+      absent(patients + "DownloadScanMesh", R"({"name":"patients/anna/scans/none"})"),
       absent(patients + "DownloadModelMesh", R"({"name":"patients/anna/models/none"})"),
       absent(patients + "DownloadScanMesh", R"({"name":"patients/anna/scans/none"})"),
   };

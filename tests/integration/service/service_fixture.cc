@@ -214,7 +214,7 @@ v1::Simulation ServiceTest::await_end(const std::string& name) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(120);
   while (std::chrono::steady_clock::now() < deadline) {
     v1::Simulation simulation = get_simulation(name);
-    if (simulation.state() >= v1::Simulation::SETTLED || simulation.name().empty()) return simulation;
+    if (has_ended(simulation.state()) || simulation.name().empty()) return simulation;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   ADD_FAILURE() << name << " does not end";

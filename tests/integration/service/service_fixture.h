@@ -30,6 +30,10 @@ Message parse_text(const std::string& text) {
   return message;
 }
 
+inline bool has_ended(v1::Simulation::State state) {
+  return state >= v1::Simulation::SETTLED && state <= v1::Simulation::FAILED;
+}
+
 /// The field violations a failed call carries, field to description.
 std::map<std::string, std::string> violations_of(const grpc::Status& status);
 std::map<std::string, std::string> violations_of(const google::rpc::Status& status);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <thread>
 
-#include "server/sessions/session_manager.h"
 #include "tests/unit/server/session_fixture.h"
 
 namespace lipofill::server {
@@ -106,38 +105,6 @@ TEST_F(SessionTest, StopsWhileItWaitsForRealTime) {
   const auto stopped = ask([&](auto reply) { s->stop("", {}, reply); });
   ASSERT_TRUE(stopped.ok());
   EXPECT_LE(stopped->report.time, stopped->wall_s + 0.011);
-}
-
-TEST_F(SessionTest, TheManagerBoundsAndStopsAll) {
-  SessionManager manager(2);
-  for (const char* id : {"a", "b"}) {
-    auto place = manager.reserve();
-    ASSERT_TRUE(place.ok());
-    const auto s = session(id, 1e6);
-    ASSERT_TRUE(manager.add(*std::move(place), s));
-    ASSERT_TRUE(start(*s).ok());
-  }
-  const auto refused = manager.reserve();
-  EXPECT_TRUE(absl::IsResourceExhausted(refused.status()));
-  EXPECT_THAT(refused.status().ToString(), HasSubstr("bound is 2"));
-  manager.remove("b");
-  EXPECT_TRUE(manager.reserve().ok()) << "given back when it is not used";
-  const auto a = manager.find("a");
-  const auto viewer = std::make_shared<Viewer>(ViewerOptions{}, [] {});
-  a->watch(viewer);
-  while (a->cached_view().report.step == 0) std::this_thread::yield();
-  ASSERT_TRUE(manager.checkpoint_all().ok());
-  ASSERT_EQ(sink_.checkpoints.size(), 1u);
-  EXPECT_FALSE(viewer->closed());
-  manager.suspend_all();
-  EXPECT_TRUE(viewer->closed());
-  EXPECT_EQ(a->cached_view().state, SimulationState::kRunning) << "it is to go on";
-  const uint64_t step = inspect(*a)->report.step;
-  EXPECT_EQ(sink_.checkpoints.back().record.step, step);
-  EXPECT_TRUE(absl::IsUnavailable(pause(*a).status()));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_EQ(inspect(*a)->report.step, step);
-  EXPECT_TRUE(absl::IsUnavailable(manager.reserve().status()));
 }
 
 }  // namespace

@@ -2,32 +2,46 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <future>
 #include <string>
+#include <thread>
 
 #include "server/sessions/task_pool.h"
 
 namespace lipofill::server {
 namespace {
 
-/// Notes its letter at each turn until it has had enough.
-class Letter : public WorkerPool::Task {
+using Clock = WorkerPool::Clock;
+
+/// Takes turns of a given length until it has had enough of them, and notes what it got.
+class Busy : public WorkerPool::Task {
  public:
-  Letter(char letter, int turns, std::string& log, std::promise<void>& done)
-      : letter_(letter), turns_(turns), log_(log), done_(done) {}
+  Busy(char letter, std::chrono::milliseconds turn, int turns, std::string& log)
+      : letter_(letter), turn_(turn), turns_(turns), log_(log) {}
   WorkerPool::Next take_turn() override {
+    const Clock::time_point begin = Clock::now();
     log_ += letter_;
+    ++turns_taken;
+    std::this_thread::sleep_for(turn_);
+    const Clock::duration taken = Clock::now() - begin;
+    used += taken;
+    longest = std::max(longest, taken);
     if (--turns_ > 0) return {WorkerPool::Next::kAgain, {}};
-    done_.set_value();
+    done.set_value();
     return {};
   }
+  std::atomic<int> turns_taken = 0;
+  Clock::duration used{};
+  Clock::duration longest{};
+  std::promise<void> done;
 
  private:
-  char letter_;
+  const char letter_;
+  const std::chrono::milliseconds turn_;
   int turns_;
   std::string& log_;
-  std::promise<void>& done_;
 };
 
 /// Holds a worker until told.
@@ -40,18 +54,59 @@ class Gate : public WorkerPool::Task {
   std::promise<void> open;
 };
 
-TEST(WorkerPool, TakesTurnsFairly) {
+TEST(WorkerPool, GivesTheSameTimeToLongAndShortTurns) {
   std::string log;
-  std::promise<void> a, b, c;
-  auto gate = std::make_shared<Gate>();
+  const auto gate = std::make_shared<Gate>();
+  const auto big = std::make_shared<Busy>('B', std::chrono::milliseconds(20), 1000, log);
+  const auto small = std::make_shared<Busy>('s', std::chrono::milliseconds(1), 60, log);
   WorkerPool pool(1);
   pool.schedule(gate);
-  pool.schedule(std::make_shared<Letter>('a', 3, log, a));
-  pool.schedule(std::make_shared<Letter>('b', 3, log, b));
-  pool.schedule(std::make_shared<Letter>('c', 1, log, c));
+  pool.schedule(big);
+  pool.schedule(small);
   gate->open.set_value();
-  for (auto* done : {&a, &b, &c}) done->get_future().wait();
-  EXPECT_EQ(log, "abcabab");
+  small->done.get_future().wait();
+  pool.stop();
+  EXPECT_EQ(log.substr(0, 2), "Bs");
+  // Whoever has had least is next: no two are further apart than a turn. Another turn may come before the pool stops;
+  // half of one is for what the pool itself takes. Turn about would give sixty turns.
+  const auto longest = std::max(big->longest, small->longest);
+  EXPECT_LE(big->used, small->used + longest * 5 / 2);
+}
+
+TEST(WorkerPool, OneThatComesLaterNeitherOwesNorIsOwed) {
+  std::string log;
+  const auto first = std::make_shared<Busy>('a', std::chrono::milliseconds(2), 1000, log);
+  const auto second = std::make_shared<Busy>('b', std::chrono::milliseconds(2), 20, log);
+  WorkerPool pool(1);
+  pool.schedule(first);
+  while (first->turns_taken < 20) std::this_thread::yield();
+  pool.schedule(second);
+  second->done.get_future().wait();
+  pool.stop();
+  const size_t begin = log.find('b');
+  EXPECT_GE(std::count(log.begin() + static_cast<ptrdiff_t>(begin), log.end(), 'a'), 5);
+}
+
+TEST(WorkerPool, HasTheOthersWaitInAQueue) {
+  std::string log;
+  const auto gate = std::make_shared<Gate>();
+  const auto a = std::make_shared<Busy>('a', std::chrono::milliseconds(0), 2, log);
+  const auto b = std::make_shared<Busy>('b', std::chrono::milliseconds(0), 2, log);
+  const auto c = std::make_shared<Busy>('c', std::chrono::milliseconds(0), 2, log);
+  WorkerPool pool(2, 1);
+  pool.schedule(gate);
+  for (const auto& task : {a, b, c}) pool.schedule(task);
+  EXPECT_EQ(pool.queue_position(*gate), 0u);
+  EXPECT_EQ(pool.queue_position(*a), 1u);
+  EXPECT_EQ(pool.queue_position(*c), 3u);
+  EXPECT_EQ(pool.n_waiting(), 3u);
+  EXPECT_TRUE(pool.withdraw(*b));
+  EXPECT_FALSE(pool.withdraw(*b));
+  EXPECT_EQ(pool.queue_position(*c), 2u);
+  gate->open.set_value();
+  c->done.get_future().wait();
+  pool.stop();
+  EXPECT_EQ(log, "aacc");
 }
 
 TEST(WorkerPool, WaitsUntilATaskIsDue) {

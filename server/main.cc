@@ -15,6 +15,7 @@
 #include "server/ops/signals.h"
 #include "server/rpc/backend_metrics.h"
 #include "server/rpc/grpc_server.h"
+#include "server/rpc/parking.h"
 #include "server/rpc/simulation_recovery.h"
 #include "server/store/data_directory.h"
 #include "server/store/sqlite_store.h"
@@ -114,6 +115,7 @@ absl::Status serve(const Options& options) {
   Metrics metrics;
   Backend backend(backend_options(options), **store, *files, *checkpoints, metrics);
   if (auto back = bring_back_simulations(backend); !back.ok()) return back;
+  const ParkingAttendant parking(backend, std::chrono::duration<double>(options.park_after_s));
   const auto server =
       GrpcServer::start(options.listen, {options.security, **authenticator, audit->get(), options.reflection}, backend);
   if (!server.ok()) return server.status();

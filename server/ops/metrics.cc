@@ -47,6 +47,7 @@ Metrics::Metrics()
       tissue_solves_(counter(registry_, "lipofill_solver_solves_total", "Solves with a factor of the tissue")),
       fallbacks_(counter(registry_, "lipofill_solver_fallbacks_total",
                          "float64 in place of float32, a direct solve in place of an iterative one")),
+      parked_(counter(registry_, "lipofill_simulations_parked_total", "Simulations that were left on disk alone")),
       ended_(counters(registry_, "lipofill_simulations_ended_total", "Simulations that ended, by state")),
       checkpoints_written_(checkpoints(registry_, "written")),
       checkpoints_failed_(checkpoints(registry_, "failed")),
@@ -92,6 +93,10 @@ void Metrics::count_step(const StepFigures& step) {
 
 void Metrics::count_ended_simulation(const std::string& state) {
   ended_.Add({{"state", state}}).Increment();
+}
+
+void Metrics::count_parked_simulation() {
+  parked_.Increment();
 }
 
 void Metrics::count_checkpoint(double seconds, uint64_t bytes) {

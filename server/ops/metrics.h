@@ -51,6 +51,7 @@ class Metrics {
 
   // Simulations.
   void count_step(const StepFigures& step);
+  void count_parked_simulation();
   void count_ended_simulation(const std::string& state);
 
   // Checkpoints.
@@ -87,6 +88,7 @@ class Metrics {
   prometheus::Counter& factorisations_;
   prometheus::Counter& tissue_solves_;
   prometheus::Counter& fallbacks_;
+  prometheus::Counter& parked_;
   prometheus::Family<prometheus::Counter>& ended_;
 
   prometheus::Counter& checkpoints_written_;

@@ -175,6 +175,10 @@ std::vector<Setting> settings_of(Options& options) {
       {"checkpoints-kept", "N", "States kept of each running simulation, the newest", &options.checkpoints_kept, 1,
        100},
       {"checkpoint-space-mb", "MB", "What all kept states may take together", &options.checkpoint_space_mb, 1, 1e8},
+      {"park-after-s", "SECONDS",
+       "Simulations that rest and that nobody has asked for so long are kept on disk alone until somebody does; 0: "
+       "never",
+       &options.park_after_s, 0, 1e7},
       {"drain-delay-s", "SECONDS",
        "After SIGTERM, say NOT_SERVING and go on for this long, so that load balancers notice", &options.drain_delay_s,
        0, 600},

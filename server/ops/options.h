@@ -33,6 +33,7 @@ struct Options {
   double checkpoint_interval_s = 10.0;
   int checkpoints_kept = 3;
   uint64_t checkpoint_space_mb = 8192;
+  double park_after_s = 1800.0;
   double drain_delay_s = 0.0;
   double drain_timeout_s = 30.0;
   std::string log_level = "info";

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -52,6 +53,8 @@ struct Backend {
   CheckpointFiles& checkpoint_files;
   Metrics& metrics;
   std::atomic<bool> stopping = false;
+  /// Held while a parked simulation is brought back or deleted: one at a time.
+  std::mutex waking;
   ModelCache models{8};
   Operations operations;
   SessionManager sessions;

@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
 #include "server/rpc/names.h"
+#include "server/rpc/parking.h"
 #include "server/rpc/request_key.h"
 #include "server/rpc/simulation_creation.h"
 #include "server/rpc/timestamps.h"
@@ -52,7 +53,9 @@ absl::StatusOr<RestoreTarget> find_target(Backend& backend, const Principal& cal
 }
 
 absl::StatusOr<v1::Simulation> take_back(Backend& backend, const RestoreTarget& target) {
-  const auto session = backend.sessions.find(target.source.id);
+  const auto found = find_or_wake(backend, target.source.id);
+  if (!found.ok()) return found.status();
+  const auto& session = *found;
   if (session == nullptr) return no_session_for("restore", target.source);
   auto loaded = load_checkpoint(backend, target.checkpoint, target.source.model);
   if (!loaded.ok()) return loaded.status();
@@ -177,7 +180,9 @@ absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const Princip
     if (!record.ok()) return record.status();
     return to_checkpoint(*record);
   }
-  const auto session = backend.sessions.find(*simulation);
+  const auto found = find_or_wake(backend, *simulation);
+  if (!found.ok()) return found.status();
+  const auto& session = *found;
   if (session == nullptr) {
     const auto record = backend.store.get_simulation(*simulation);
     return record.ok() ? no_session_for("checkpoint", *record) : record.status();

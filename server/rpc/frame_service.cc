@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
 #include "server/rpc/names.h"
+#include "server/rpc/parking.h"
 #include "server/rpc/unary.h"
 #include "server/sessions/draining.h"
 #include "server/sessions/shortage.h"
@@ -122,7 +123,24 @@ absl::Status FrameService::begin(grpc::CallbackServerContext* context, const grp
   if (const auto session = backend_.sessions.find(*id); session != nullptr) {
     return watch_session(*request, session, stream);
   }
+  const auto record = backend_.store.get_simulation(*id);
+  if (record.ok() && is_parked(*record)) return watch_parked(*request, *id, stream);
   return watch_kept(*request, *id, stream);
+}
+
+absl::Status FrameService::watch_parked(const v1::WatchRequest& request, const std::string& id,
+                                        const std::shared_ptr<WatchStream>& stream) {
+  stream->hold();
+  const bool taken = backend_.calls.run([this, request, id, stream] {
+    const absl::Status watching = guarded([&]() -> absl::Status {
+      const auto session = find_or_wake(backend_, id);
+      if (!session.ok()) return session.status();
+      return *session != nullptr ? watch_session(request, *session, stream) : watch_kept(request, id, stream);
+    });
+    if (!watching.ok()) stream->begin_failed(watching);
+  });
+  if (!taken) stream->begin_failed(too_many_calls(backend_));
+  return absl::OkStatus();
 }
 
 std::shared_ptr<void> FrameService::take_place() {
@@ -142,11 +160,18 @@ absl::Status FrameService::watch_session(const v1::WatchRequest& request, const 
   const std::string id = session->id();
   if (!request.viewer().empty()) viewers_.add(id, request.viewer(), viewer);
   backend_.metrics.count_viewer_come();
-  stream->begin(viewer, heartbeat_of(request), [this, session, viewer, id, name = request.viewer()] {
+  const auto leave = [this, viewer, id, name = request.viewer()] {
     viewers_.remove(id, name, viewer);
-    session->unwatch(viewer);
     backend_.metrics.count_viewer_gone();
+  };
+  const bool begun = stream->begin(viewer, heartbeat_of(request), [session, viewer, leave] {
+    session->unwatch(viewer);
+    leave();
   });
+  if (!begun) {
+    leave();
+    return absl::OkStatus();
+  }
   session->watch(viewer);
   // The daemon may have begun to stop since the caller looked, and gone past this session.
   if (backend_.stopping) viewer->close(draining());

@@ -166,6 +166,14 @@ void ResultKeeper::stepped(const SeriesEntry& entry) {
   metrics_.count_step(step);
 }
 
+absl::Status ResultKeeper::parked(const std::string& id, const SessionView& view) {
+  const absl::Status kept = store_.keep_summary(id, to_summary(view).SerializeAsString());
+  if (!kept.ok()) return kept;
+  sessions_.remove(id);
+  metrics_.count_parked_simulation();
+  return kept;
+}
+
 absl::Status ResultKeeper::ended(const std::string& id, const SessionView& view, const Topology& topology,
                                  const Frame& frame) {
   std::vector<std::string> meshes;

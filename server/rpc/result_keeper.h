@@ -38,6 +38,7 @@ class ResultKeeper : public SessionSink {
                                                    const RequestKey& request) override;
   absl::Status append_series(const std::string& id, const std::vector<SeriesEntry>& rows) override;
   void stepped(const SeriesEntry& entry) override;
+  absl::Status parked(const std::string& id, const SessionView& view) override;
   absl::Status ended(const std::string& id, const SessionView& view, const Topology& topology,
                      const Frame& frame) override;
 

@@ -6,6 +6,7 @@
 #include "server/rpc/evaluation.h"
 #include "server/rpc/frame_encoding.h"
 #include "server/rpc/names.h"
+#include "server/rpc/parking.h"
 #include "server/rpc/report_conversion.h"
 #include "server/rpc/scan_reading.h"
 #include "server/store/sqlite_store.h"
@@ -93,8 +94,9 @@ absl::Status read_series(Backend& backend, const std::string& id, uint64_t after
 
 absl::StatusOr<PresentResult> read_present(Backend& backend, const std::string& id,
                                            const std::vector<std::string>& meshes) {
-  const auto session = backend.sessions.find(id);
-  return session != nullptr ? capture(*session, meshes) : read_result(backend, id);
+  const auto session = find_or_wake(backend, id);
+  if (!session.ok()) return session.status();
+  return *session != nullptr ? capture(**session, meshes) : read_result(backend, id);
 }
 
 absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::EvaluateSimulationRequest& request) {

@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/rpc/etag.h"
 #include "server/rpc/names.h"
+#include "server/rpc/parking.h"
 #include "server/rpc/report_conversion.h"
 #include "server/rpc/request_key.h"
 #include "server/rpc/simulation_conversion.h"
@@ -80,6 +81,7 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
     simulation.set_viewers(static_cast<uint32_t>(view->viewers));
   } else {
     simulation.mutable_summary()->ParseFromString(record.summary_message);
+    simulation.set_parked(is_parked(record));
   }
   return simulation;
 }
@@ -139,10 +141,10 @@ absl::StatusOr<v1::Simulation> open_session(Backend& backend, SessionManager::Pl
 
 absl::StatusOr<v1::Simulation> show_made_before(Backend& backend, const std::string& name, bool start) {
   const std::string id = name.substr(simulation_name("").size());
-  const auto session = backend.sessions.find(id);
-  if (start && session != nullptr && session->cached_view().state == SimulationState::kReady) {
+  const auto session = start ? find_or_wake(backend, id) : nullptr;
+  if (session.ok() && *session != nullptr && (*session)->cached_view().state == SimulationState::kReady) {
     // The daemon ended between making it and starting it; another repetition may be first.
-    start_and_wait(*session).status().IgnoreError();
+    start_and_wait(**session).status().IgnoreError();
   }
   return show_simulation(backend, id);
 }

@@ -9,9 +9,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/rpc/checkpoint_calls.h"
+#include "server/rpc/parking.h"
 #include "server/rpc/simulation_conversion.h"
 #include "server/rpc/simulation_creation.h"
 #include "server/rpc/unary.h"
+#include "server/sessions/draining.h"
 #include "server/sessions/identifiers.h"
 #include "server/store/sqlite_store.h"
 #include "spdlog/spdlog.h"
@@ -27,6 +29,12 @@ struct Ground {
   v1::SimulationSpec spec;
   CheckpointRecord checkpoint;  ///< of step 0 and no command: the start
   std::string note;             ///< which checkpoints could not be used
+};
+
+/// A session that others do not find yet.
+struct Revived {
+  std::shared_ptr<Session> session;
+  uint64_t bytes = 0;  ///< it takes in memory
 };
 
 bool is_about_the_checkpoint(const absl::Status& status) {
@@ -120,7 +128,8 @@ absl::StatusOr<SessionHistory> history_from(const Ground& ground, const Simulati
   return history;
 }
 
-absl::Status bring_back(Backend& backend, const SimulationRecord& record) {
+/// Makes what a simulation goes on with, in a new epoch.
+absl::StatusOr<Revived> revive(Backend& backend, const SimulationRecord& record) {
   const auto commands = backend.store.list_commands(record.id);
   if (!commands.ok()) return commands.status();
   auto ground = find_ground(backend, record, *commands);
@@ -137,7 +146,15 @@ absl::Status bring_back(Backend& backend, const SimulationRecord& record) {
   const auto session =
       std::make_shared<Session>(make_session_options(backend, record.id, *epoch, ground->spec),
                                 std::move(ground->simulation), backend.workers, backend.keeper, *std::move(history));
-  backend.sessions.bring_back("", bytes, session);
+  return Revived{session, bytes};
+}
+
+absl::Status bring_back(Backend& backend, const SimulationRecord& record) {
+  auto revived = revive(backend, record);
+  if (!revived.ok()) return revived.status();
+  // What it was parked with is not true of it for long.
+  if (auto cleared = backend.store.keep_summary(record.id, ""); !cleared.ok()) return cleared;
+  backend.sessions.bring_back("", revived->bytes, std::move(revived->session));
   return absl::OkStatus();
 }
 
@@ -162,6 +179,7 @@ absl::Status bring_back_simulations(Backend& backend) {
   const auto work = [&] {
     for (size_t i = next++; i < records->size(); i = next++) {
       const SimulationRecord& record = (*records)[i];
+      if (is_parked(record)) continue;
       const absl::Status back = guarded([&] { return bring_back(backend, record); });
       if (!back.ok()) tell_failure(backend, record, back);
     }
@@ -170,6 +188,19 @@ absl::Status bring_back_simulations(Backend& backend) {
   const size_t n_threads = std::min(records->size(), static_cast<size_t>(backend.workers.n_workers()));
   for (size_t i = 0; i < n_threads; ++i) threads.emplace_back(work);
   for (std::thread& thread : threads) thread.join();
+  return absl::OkStatus();
+}
+
+absl::Status wake_simulation(Backend& backend, const SimulationRecord& record) {
+  auto place = backend.sessions.reserve("");
+  if (!place.ok()) return place.status();
+  auto revived = revive(backend, record);
+  if (!revived.ok()) return revived.status();
+  if (auto room = place->claim(revived->bytes); !room.ok()) return room;
+  if (auto cleared = backend.store.keep_summary(record.id, ""); !cleared.ok()) return cleared;
+  if (!backend.sessions.add(*std::move(place), revived->session)) return draining();
+  revived->session->go_on();
+  spdlog::info("{} is in memory again", simulation_name(record.id));
   return absl::OkStatus();
 }
 

@@ -9,6 +9,7 @@
 #include "server/rpc/field_mask.h"
 #include "server/rpc/listing.h"
 #include "server/rpc/names.h"
+#include "server/rpc/parking.h"
 #include "server/rpc/request_key.h"
 #include "server/rpc/result_reading.h"
 #include "server/rpc/simulation_conversion.h"
@@ -66,15 +67,27 @@ void foresee_injection(Session& session, const InjectionOrder& order, const v1::
 
 /// What becomes of a command when there is no session: the simulation has ended, perhaps by an equal request, or could
 /// not be brought back.
-absl::Status answer_without_session(Backend& backend, const std::string& id, const char* what, const RequestKey& key,
-                                    v1::Simulation& response) {
-  const auto record = backend.store.get_simulation(id);
-  if (!record.ok()) return record.status();
+absl::Status answer_without_session(Backend& backend, const SimulationRecord& record, const char* what,
+                                    const RequestKey& key, v1::Simulation& response) {
   const auto earlier = backend.store.find_request(key);
   if (!earlier.ok()) return earlier.status();
-  if (!earlier->has_value()) return no_session_for(what, *record);
-  response = to_simulation(*record, nullptr);
+  if (!earlier->has_value()) return no_session_for(what, record);
+  response = to_simulation(record, nullptr);
   return absl::OkStatus();
+}
+
+using Act = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
+
+void wake_and_act(Backend& backend, const std::string& id, const RequestKey& key, const Act& act,
+                  const Session::Reply& reply) {
+  absl::StatusOr<std::shared_ptr<Session>> session = nullptr;
+  const absl::Status woken = guarded([&] {
+    session = find_or_wake(backend, id);
+    return session.status();
+  });
+  if (!woken.ok()) return reply(woken);
+  if (*session == nullptr) return reply(absl::UnavailableError("the simulation ended at this moment; try again"));
+  act(**session, key, reply);
 }
 
 }  // namespace
@@ -96,7 +109,14 @@ Reactor* SimulationService::command(Context* context, const Request* request, v1
       act(*session, key, reply_to(backend_, *id, reactor, response, amend));
       return absl::OkStatus();
     }
-    return answer_without_session(backend_, *id, what, key, *response);
+    const auto record = backend_.store.get_simulation(*id);
+    if (!record.ok()) return record.status();
+    if (!is_parked(*record)) return answer_without_session(backend_, *record, what, key, *response);
+    answered =
+        backend_.calls.run([this, id = *id, key, act, reply = reply_to(backend_, *id, reactor, response, amend)] {
+          wake_and_act(backend_, id, key, act, reply);
+        });
+    return too_many_calls(backend_);
   });
   if (!answered) reactor->Finish(to_grpc_status(done));
   return reactor;
@@ -191,8 +211,11 @@ Reactor* SimulationService::DeleteSimulation(Context* context, const v1::DeleteS
         [reactor](const absl::StatusOr<SessionView>& view) { reactor->Finish(to_grpc_status(view.status())); });
     return reactor;
   }
-  return answer(context, request,
-                [&] { return id.ok() ? delete_simulation_record(backend_, *id, request->etag()) : id.status(); });
+  return answer(context, request, [&] {
+    // None may be woken meanwhile.
+    const std::lock_guard lock(backend_.waking);
+    return id.ok() ? delete_simulation_record(backend_, *id, request->etag()) : id.status();
+  });
 }
 
 Reactor* SimulationService::Inject(Context* context, const v1::InjectRequest* request, v1::Simulation* response) {

@@ -20,20 +20,27 @@ grpc::Slice share(const std::shared_ptr<const EncodedMessages>& encoded, const s
 
 }  // namespace
 
-void WatchStream::begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat,
+bool WatchStream::begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat,
                         std::function<void()> on_done) {
+  std::unique_lock lock(mutex_);
+  if (finished_) return false;
   self_ = shared_from_this();
   on_done_ = std::move(on_done);
-  std::unique_lock lock(mutex_);
   viewer_ = std::move(viewer);
   heartbeat_ = heartbeat;
   last_sent_ = Courier::Clock::now();
   advance(std::move(lock));
+  return true;
+}
+
+void WatchStream::hold() {
+  self_ = shared_from_this();
 }
 
 void WatchStream::begin_kept(const std::shared_ptr<const KeptMessages>& kept) {
-  self_ = shared_from_this();
   std::unique_lock lock(mutex_);
+  if (finished_) return;
+  self_ = shared_from_this();
   queue_meshes({kept, &kept->meshes});
   queue_frame({kept, &kept->frame}, 0);
   end_ = absl::OkStatus();
@@ -41,8 +48,9 @@ void WatchStream::begin_kept(const std::shared_ptr<const KeptMessages>& kept) {
 }
 
 void WatchStream::begin_failed(const absl::Status& status) {
-  self_ = shared_from_this();
   std::unique_lock lock(mutex_);
+  if (finished_) return;
+  self_ = shared_from_this();
   end_ = status;
   advance(std::move(lock));
 }

@@ -39,8 +39,11 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   void end_at(Courier::Clock::time_point time) { expires_ = time; }
 
   /// A stream that shows what a session puts into the viewer, and a heartbeat where that was nothing for so long.
-  /// `on_done` is called once, at the end.
-  void begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat, std::function<void()> on_done);
+  /// `on_done` is called once, at the end. False, and nothing is shown, when the client left while it was held.
+  [[nodiscard]] bool begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat,
+                           std::function<void()> on_done);
+  /// Keeps it, for a begin that comes later from another thread.
+  void hold();
   /// A stream of messages that are all there.
   void begin_kept(const std::shared_ptr<const KeptMessages>& kept);
   /// A stream that ends at once.

@@ -13,4 +13,11 @@ inline absl::Status draining() {
                     {"DRAINING", retry_delay_s});
 }
 
+/// For whoever held on to a session while it was parked; the next call wakes it.
+inline absl::Status just_parked() {
+  constexpr double retry_delay_s = 0.1;
+  return with_hints(absl::UnavailableError("the simulation was parked at this moment; try again"),
+                    {"PARKED", retry_delay_s});
+}
+
 }  // namespace lipofill::server

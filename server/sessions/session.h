@@ -69,6 +69,7 @@ struct SessionHistory {
 /// tests/unit/server/session_test.cc, tests/unit/server/session_resume_test.cc and tests/integration/.
 class Session : public WorkerPool::Task, public std::enable_shared_from_this<Session> {
  public:
+  using Clock = WorkerPool::Clock;
   using Reply = std::function<void(absl::StatusOr<SessionView>)>;
 
   Session(SessionOptions options, std::unique_ptr<simulation::Simulation> simulation, WorkerPool& workers,
@@ -104,6 +105,12 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   /// For the end of the daemon: no step and no command any more, the state kept.
   void suspend(Done done);
 
+  /// How long nothing was asked of it but figures; 0 while it runs, is watched or catches up. Without waiting.
+  Clock::duration idle_time() const;
+  /// If it still is idle for so long, keeps its state and figures, after which it answers nothing any more but that it
+  /// is parked.
+  void park(std::chrono::duration<double> idle);
+
   /// Shows the meshes and the present frame to the viewer, then every frame it wants, until unwatch() or the end.
   void watch(std::shared_ptr<Viewer> viewer);
   void unwatch(std::shared_ptr<Viewer> viewer);
@@ -122,7 +129,6 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
 
  private:
   using Command = std::function<void()>;
-  using Clock = WorkerPool::Clock;
 
   void post(Command command);
   void queue(Command command);
@@ -168,6 +174,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   void checkpoint_when_due();
   void checkpoint_automatically();
   absl::Status save_now();
+  bool can_be_parked(Clock::duration idle) const;
   absl::Status go_back(RestoreOrder& order, const RequestKey& request);
 
   void update_view();
@@ -199,6 +206,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   uint64_t epoch_;
   bool scheduled_ = false;  ///< the pool has it
   bool suspended_ = false;
+  bool parked_ = false;
   bool result_kept_ = false;
   SessionHistory history_;
   bool catching_up_ = false;
@@ -218,6 +226,8 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   std::shared_ptr<const Frame> preview_frame_;    ///< once it is done
 
   std::atomic<int> watching_ = 0;  ///< between watch() and unwatch()
+
+  std::atomic<Clock::time_point> last_asked_ = Clock::now();
 
   mutable std::mutex view_mutex_;
   SessionView view_;

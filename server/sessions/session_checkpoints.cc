@@ -68,6 +68,34 @@ void Session::save(Done done) {
   post([this, done] { done(save_now()); });
 }
 
+Session::Clock::duration Session::idle_time() const {
+  const std::lock_guard lock(view_mutex_);
+  const bool rests = view_.state == SimulationState::kReady || view_.state == SimulationState::kPaused;
+  return rests && watching_ == 0 ? Clock::now() - last_asked_.load() : Clock::duration::zero();
+}
+
+bool Session::can_be_parked(Clock::duration idle) const {
+  return simulation_ != nullptr && !suspended_ && !catching_up_ && viewers_.empty() && mailbox_empty() &&
+         idle_time() >= idle;
+}
+
+void Session::park(std::chrono::duration<double> idle) {
+  post([this, idle] {
+    if (!can_be_parked(std::chrono::duration_cast<Clock::duration>(idle))) return;
+    const absl::Status parked = guarded([this] {
+      const absl::Status saved = save_now();
+      return saved.ok() ? sink_.parked(options_.id, full_view()) : saved;
+    });
+    if (!parked.ok()) {
+      last_asked_ = Clock::now();  // try again after as long
+      return spdlog::error("simulations/{} cannot be parked: {}", options_.id, parked.ToString());
+    }
+    suspended_ = parked_ = true;
+    let_go();
+    spdlog::info("simulations/{} is parked at step {}", options_.id, view_.report.step);
+  });
+}
+
 void Session::suspend(Done done) {
   post([this, done] {
     suspended_ = true;

@@ -42,6 +42,7 @@ void Session::answer(const Reply& reply, const std::function<absl::Status()>& ac
 
 void Session::command(const char* what, std::vector<SimulationState> allowed, const RequestKey& request,
                       const Reply& reply, const std::function<absl::Status()>& act) {
+  last_asked_ = Clock::now();
   if (catching_up_ && !suspended_) {
     held_.push_back([this, what, allowed, request, reply, act] { command(what, allowed, request, reply, act); });
     return;
@@ -55,6 +56,7 @@ void Session::command(const char* what, std::vector<SimulationState> allowed, co
 }
 
 absl::Status Session::check_allowed(const char* what, const std::vector<SimulationState>& allowed) const {
+  if (parked_) return just_parked();
   if (suspended_) return draining();
   if (std::find(allowed.begin(), allowed.end(), view_.state) != allowed.end()) return absl::OkStatus();
   return absl::FailedPreconditionError(

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "absl/strings/str_cat.h"
+#include "server/sessions/draining.h"
 #include "server/sessions/session.h"
 #include "spdlog/spdlog.h"
 
@@ -12,6 +13,7 @@ namespace lipofill::server {
 void Session::watch(std::shared_ptr<Viewer> viewer) {
   ++watching_;
   post([this, viewer] {
+    if (parked_) return viewer->close(just_parked());
     try {
       const auto meshes = topology();
       if (const absl::Status chosen = viewer->choose_meshes(*meshes); !chosen.ok()) return viewer->close(chosen);
@@ -30,6 +32,7 @@ void Session::watch(std::shared_ptr<Viewer> viewer) {
 
 void Session::unwatch(std::shared_ptr<Viewer> viewer) {
   --watching_;
+  last_asked_ = Clock::now();
   post([this, viewer] { std::erase(viewers_, viewer); });
 }
 
@@ -37,6 +40,7 @@ void Session::capture(std::vector<std::string> meshes, CaptureReply reply) {
   post([this, meshes, reply] {
     std::shared_ptr<const Topology> shown;
     std::shared_ptr<const Frame> frame;
+    if (parked_) return reply(shown, frame);
     try {
       shown = topology();
       frame = last_frame_ != nullptr ? last_frame_ : make_frame(meshes, false);

@@ -129,6 +129,13 @@ absl::Status SqliteStore::set_simulation_state(const std::string& id, Simulation
   return done.ok() && database_->changes() == 0 ? no_simulation(id) : done;
 }
 
+absl::Status SqliteStore::keep_summary(const std::string& id, const std::string& summary_message) {
+  const std::lock_guard lock(mutex_);
+  Query update(*database_, "UPDATE simulations SET summary = ? WHERE id = ?");
+  const absl::Status done = update.bind(summary_message, id).run();
+  return done.ok() && database_->changes() == 0 ? no_simulation(id) : done;
+}
+
 absl::Status SqliteStore::append_series(const std::string& id, const SeriesChunk& chunk) {
   const std::lock_guard lock(mutex_);
   return write_rows(id, chunk);

@@ -42,6 +42,7 @@ class SqliteStore : public Store {
   absl::StatusOr<std::vector<SimulationRecord>> list_simulations(const Scope& scope, const Page& page) override;
   absl::Status end_simulation(const SimulationRecord& ended, const SimulationResult& result) override;
   absl::Status set_simulation_state(const std::string& id, SimulationState state, const std::string& reason) override;
+  absl::Status keep_summary(const std::string& id, const std::string& summary_message) override;
   absl::Status append_series(const std::string& id, const SeriesChunk& chunk) override;
   absl::StatusOr<std::optional<SeriesChunk>> next_series_chunk(const std::string& id, uint64_t after_step) override;
   absl::StatusOr<SimulationResult> get_result(const std::string& id) override;

@@ -59,6 +59,8 @@ class Store {
   /// State and reason alone, without a result.
   virtual absl::Status set_simulation_state(const std::string& id, SimulationState state,
                                             const std::string& reason) = 0;
+  /// Figures of one that has not ended, which is at rest; empty: none, it is in memory again.
+  virtual absl::Status keep_summary(const std::string& id, const std::string& summary_message) = 0;
   virtual absl::Status append_series(const std::string& id, const SeriesChunk& chunk) = 0;
   /// The chunk that holds the first step after `after_step`; none when there is no later one.
   virtual absl::StatusOr<std::optional<SeriesChunk>> next_series_chunk(const std::string& id, uint64_t after_step) = 0;

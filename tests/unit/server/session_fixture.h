@@ -64,6 +64,12 @@ class MemorySink : public SessionSink {
     for (const SeriesEntry& row : rows) steps.push_back(row.report.step);
     return absl::OkStatus();
   }
+  absl::Status parked(const std::string& id, const SessionView& view) override {
+    const std::lock_guard lock(mutex);
+    if (!room.ok()) return room;
+    views[id] = view;
+    return absl::OkStatus();
+  }
   absl::Status ended(const std::string& id, const SessionView& view, const Topology&, const Frame& frame) override {
     const std::lock_guard lock(mutex);
     if (!room.ok()) return room;

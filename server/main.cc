@@ -17,6 +17,7 @@
 #include "server/rpc/grpc_server.h"
 #include "server/rpc/parking.h"
 #include "server/rpc/simulation_recovery.h"
+#include "server/store/backup.h"
 #include "server/store/data_directory.h"
 #include "server/store/sqlite_store.h"
 #include "spdlog/spdlog.h"
@@ -130,6 +131,28 @@ absl::Status serve(const Options& options) {
   return served;
 }
 
+/// In place of serving: a backup or a restore, with a line of progress a second.
+absl::Status copy_store(const Options& options) {
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point told = Clock::now();
+  const auto progress = [&told](const BackupReport& so_far) {
+    if (Clock::now() - told < std::chrono::seconds(1)) return;
+    told = Clock::now();
+    spdlog::info("{} files, {} MB so far", so_far.files, so_far.bytes / 1'000'000);
+  };
+  const bool is_backup = !options.backup_to.empty();
+  const auto done = is_backup ? back_up_store(options.data, options.backup_to, progress)
+                              : restore_store(options.restore_from, options.data, progress);
+  if (!done.ok()) return done.status();
+  spdlog::info("{}: {} files, {} MB", is_backup ? "backed up to " + options.backup_to : "restored to " + options.data,
+               done->files, done->bytes / 1'000'000);
+  return absl::OkStatus();
+}
+
+bool copies_store(const Options& options) {
+  return !options.backup_to.empty() || !options.restore_from.empty();
+}
+
 }  // namespace
 }  // namespace lipofill::server
 
@@ -141,7 +164,7 @@ int main(int argc, char** argv) {
   set_up_logging(options->log_level, options->log_format);
   take_signals();
   try {
-    const absl::Status served = serve(*options);
+    const absl::Status served = copies_store(*options) ? copy_store(*options) : serve(*options);
     if (served.ok()) return 0;
     spdlog::error("{}", std::string(served.message()));
   } catch (const std::exception& error) {

@@ -30,6 +30,9 @@ constexpr char kFooter[] =
     "  lipofilld --listen unix:/run/lipofill.sock        serve this machine's users who may write to the socket\n"
     "  lipofilld --config /etc/lipofill/lipofilld.toml --check\n"
     "                                                    say what is set, and what is wrong with it\n"
+    "  lipofilld --data ~/lipofill --backup-to /mnt/backup/today\n"
+    "                                                    copy the store while the daemon runs; also checkable by\n"
+    "                                                    sha256sum -c SHA256SUMS\n"
     "\n"
     "SIGTERM and SIGINT drain it: it takes no new work, tells viewers, keeps the state of simulations, and ends with "
     "0. "
@@ -39,6 +42,8 @@ struct CommandLine {
   GivenValues given;
   std::string config;
   bool check = false;
+  std::string backup_to;
+  std::string restore_from;
   std::vector<std::string> audit_files;  ///< to be verified
 };
 
@@ -68,6 +73,13 @@ std::optional<CommandLine> read_command_line(int argc, char** argv, const std::v
   const CLI::Option* config =
       app.add_option("--config")->description("File of settings, TOML; see deploy/lipofilld.toml")->type_name("PATH");
   app.add_flag("--check", line.check, "Read all settings, say what they are or what is wrong with them, and end");
+  app.add_option("--backup-to", line.backup_to,
+                 "Copy the store in --data to a new directory, whether a daemon serves it or not, and end")
+      ->type_name("DIR");
+  app.add_option("--restore-from", line.restore_from,
+                 "Fill --data, which must have no store yet, from a backup that was checked whole, and end")
+      ->type_name("DIR")
+      ->excludes("--backup-to");
   app.add_option("--verify-audit", line.audit_files,
                  "Look through files of an audit log, given in their order, for lines changed, taken out or put in")
       ->type_name("FILE")
@@ -243,6 +255,8 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
     exit_code = 0;
     return std::nullopt;
   }
+  options.backup_to = line->backup_to;
+  options.restore_from = line->restore_from;
   return options;
 }
 

@@ -14,6 +14,10 @@ namespace lipofill::server {
 struct Options {
   Options();
 
+  /// What to do in place of serving; at most one is given.
+  std::string backup_to;
+  std::string restore_from;
+
   std::vector<std::string> listen = {"127.0.0.1:50061"};
   bool insecure_listen_anywhere = false;
   std::string port_file;

@@ -94,7 +94,7 @@ absl::StatusOr<v1::Simulation> begin_from(Backend& backend, const RestoreTarget&
   if (backend.store.get_simulation(*id).ok()) {
     return absl::AlreadyExistsError(absl::StrCat(simulation_name(*id), " exists"));
   }
-  auto place = backend.sessions.reserve("");
+  auto place = backend.sessions.reserve(target.source.tenant);
   if (!place.ok()) return place.status();
   auto loaded = load_checkpoint(backend, target.checkpoint, target.source.model);
   if (!loaded.ok()) return loaded.status();

@@ -172,7 +172,7 @@ absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const Princip
   if (earlier->has_value()) return show_made_before(backend, **earlier, request.start());
 
   if (absl::Status small = check_size(request.spec(), backend.options.sizes); !small.ok()) return small;
-  auto place = backend.sessions.reserve("");
+  auto place = backend.sessions.reserve(record->tenant);
   if (!place.ok()) return place.status();
   auto simulation = make_simulation(backend, record->model, request.spec());
   if (!simulation.ok()) return simulation.status();

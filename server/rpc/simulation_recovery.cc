@@ -154,7 +154,7 @@ absl::Status bring_back(Backend& backend, const SimulationRecord& record) {
   if (!revived.ok()) return revived.status();
   // What it was parked with is not true of it for long.
   if (auto cleared = backend.store.keep_summary(record.id, ""); !cleared.ok()) return cleared;
-  backend.sessions.bring_back("", revived->bytes, std::move(revived->session));
+  backend.sessions.bring_back(record.tenant, revived->bytes, std::move(revived->session));
   return absl::OkStatus();
 }
 
@@ -192,7 +192,7 @@ absl::Status bring_back_simulations(Backend& backend) {
 }
 
 absl::Status wake_simulation(Backend& backend, const SimulationRecord& record) {
-  auto place = backend.sessions.reserve("");
+  auto place = backend.sessions.reserve(record.tenant);
   if (!place.ok()) return place.status();
   auto revived = revive(backend, record);
   if (!revived.ok()) return revived.status();

@@ -93,6 +93,18 @@ absl::Status Database::execute(const char* sql) {
   return code == SQLITE_OK ? absl::OkStatus() : error(code);
 }
 
+absl::Status Database::copy_to(const std::string& path) {
+  const auto target = Database::open(path);
+  if (!target.ok()) return target.status();
+  errno = 0;
+  sqlite3_backup* backup = sqlite3_backup_init((*target)->handle_, "main", handle_, "main");
+  if (backup == nullptr) return (*target)->error(sqlite3_errcode((*target)->handle_));
+  constexpr int kAllPages = -1;
+  const int code = sqlite3_backup_step(backup, kAllPages);
+  sqlite3_backup_finish(backup);
+  return code == SQLITE_DONE ? absl::OkStatus() : (*target)->error(code);
+}
+
 int Database::changes() const {
   return sqlite3_changes(handle_);
 }

@@ -68,6 +68,8 @@ class Database {
 
   absl::Status execute(const char* sql);
   int changes() const;
+  /// Copies the whole database, as this connection sees it now, to a new file.
+  absl::Status copy_to(const std::string& path);
 
  private:
   friend class Query;

@@ -21,12 +21,16 @@ using Action = std::function<absl::StatusOr<ExitCode>()>;
 class Application {
  public:
   std::string server = default_server();
+  CredentialFiles credential_files = credential_files_of_environment();
   bool json = false;
   Action action;  ///< what the command line asks for
 
   /// From here on Ctrl-C asks to stop instead of ending the program.
   const Interrupt& interrupt();
+  /// Before anything connects: what the files of credentials hold.
+  absl::Status read_credentials();
   Connection connect();
+  /// `server` with the credentials; any other daemon, a private one, without.
   Connection connect_to(const std::string& address);
 
   /// Answers with a message: its JSON with --json, else the text.
@@ -36,6 +40,7 @@ class Application {
 
  private:
   std::optional<Interrupt> interrupt_;
+  Credentials credentials_;
 };
 
 /// A command with --server and --json that carries out `action` once the command line is read.

@@ -17,6 +17,8 @@ ExitCode exit_code_of(const absl::Status& status) {
     case absl::StatusCode::kAborted:
     case absl::StatusCode::kFailedPrecondition:
     case absl::StatusCode::kResourceExhausted:
+    case absl::StatusCode::kUnauthenticated:
+    case absl::StatusCode::kPermissionDenied:
       return ExitCode::kNotPossible;
     case absl::StatusCode::kCancelled:
       return ExitCode::kInterrupted;

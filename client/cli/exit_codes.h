@@ -21,7 +21,7 @@ inline constexpr char kExitCodeHelp[] =
     "  1    the simulation FAILED, or the run did not reach its goal\n"
     "  2    usage, or input that is refused (a plan, a scan, a value)\n"
     "  3    the daemon is not reachable\n"
-    "  4    not found, or not possible in the present state\n"
+    "  4    not found, not allowed, or not possible in the present state\n"
     "  5    an internal error\n"
     "  130  interrupted\n";
 

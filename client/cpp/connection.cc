@@ -1,8 +1,5 @@
 #include "client/cpp/connection.h"
 
-#include <grpcpp/create_channel.h>
-#include <grpcpp/security/credentials.h>
-
 #include <cstdlib>
 
 #include "absl/strings/str_cat.h"
@@ -12,7 +9,7 @@
 namespace lipofill::client {
 namespace {
 
-std::shared_ptr<grpc::Channel> open_channel(const std::string& server) {
+grpc::ChannelArguments channel_arguments() {
   grpc::ChannelArguments arguments;
   // A stalled or frozen daemon is seen only through keepalive.
   arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 60'000);
@@ -20,7 +17,7 @@ std::shared_ptr<grpc::Channel> open_channel(const std::string& server) {
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2'000);
   // A daemon of this machine is never behind a proxy.
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
-  return grpc::CreateCustomChannel(server, grpc::InsecureChannelCredentials(), arguments);
+  return arguments;
 }
 
 }  // namespace
@@ -40,14 +37,20 @@ absl::Status status_of(const grpc::Status& status, const std::string& server) {
   if (status.error_code() == grpc::StatusCode::UNAVAILABLE && !from_daemon) {
     wire.set_message(absl::StrCat("no daemon answers at ", server, "; start lipofilld or use --spawn (",
                                   status.error_message(), ")"));
+  } else if (status.error_code() == grpc::StatusCode::UNAUTHENTICATED) {
+    wire.set_message(absl::StrCat("the daemon at ", server, " does not know who calls: ", status.error_message(),
+                                  ". Give a token (--token-file or LIPOFILL_TOKEN_FILE) or a client certificate ",
+                                  "(--tls-cert and --tls-key), or a new one"));
   } else if (status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED) {
     wire.set_message(absl::StrCat("the daemon at ", server, " did not answer in time"));
   }
   return status_of(wire);
 }
 
-Connection::Connection(std::string server, std::stop_token stop)
-    : server_(std::move(server)), stop_(std::move(stop)), channel_(open_channel(server_)) {}
+Connection::Connection(std::string server, std::stop_token stop, const Credentials& credentials)
+    : server_(std::move(server)),
+      stop_(std::move(stop)),
+      channel_(open_channel(server_, credentials, channel_arguments())) {}
 
 Connection Connection::without_stop() const {
   Connection copy = *this;

@@ -11,6 +11,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "client/cpp/credentials.h"
 
 namespace lipofill::client {
 
@@ -19,7 +20,8 @@ inline constexpr char kDefaultServer[] = "127.0.0.1:50061";
 /// LIPOFILL_SERVER where it is set, else kDefaultServer.
 std::string default_server();
 
-/// A gRPC status as a status of this library, with its details; UNAVAILABLE says which daemon was asked and what to do.
+/// A gRPC status as a status of this library, with its details; UNAVAILABLE and UNAUTHENTICATED say which daemon
+/// was asked and what to do.
 absl::Status status_of(const grpc::Status& status, const std::string& server);
 
 /// A daemon to talk to. Calls end with CANCELLED soon after the stop token asks for it. Thread-safe; copies share the
@@ -32,7 +34,7 @@ absl::Status status_of(const grpc::Status& status, const std::string& server);
 /// Checked by tests/unit/client/errors_test.cc and tests/integration/cli/.
 class Connection {
  public:
-  explicit Connection(std::string server, std::stop_token stop = {});
+  explicit Connection(std::string server, std::stop_token stop = {}, const Credentials& credentials = {});
 
   const std::string& server() const { return server_; }
   const std::shared_ptr<grpc::Channel>& channel() const { return channel_; }

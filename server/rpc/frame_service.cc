@@ -107,6 +107,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameService::Watch(grpc::CallbackSe
 
 absl::Status FrameService::begin(grpc::CallbackServerContext* context, const grpc::ByteBuffer& bytes,
                                  std::shared_ptr<WatchStream>& stream) {
+  if (const absl::Status& refusal = call_of(context).refusal; !refusal.ok()) return refusal;
   const auto request = parse_request(bytes);
   if (!request.ok()) return request.status();
   if (const absl::Status good = check_call(context, *request); !good.ok()) return good;

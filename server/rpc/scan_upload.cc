@@ -79,6 +79,7 @@ class UploadStream : public grpc::ServerReadReactor<v1::UploadScanRequest> {
 
   /// The client said that it is done, or has gone, before all bytes were here.
   void finish_early() {
+    if (const absl::Status& refusal = call_of(context_).refusal; !refusal.ok()) return Finish(to_grpc_status(refusal));
     if (name_.empty()) return Finish(to_grpc_status(field_violation("name", "is missing: there was no message")));
     *response_ = to_scan(record_);
     Finish(grpc::Status::OK);

@@ -74,7 +74,10 @@ absl::StatusOr<v1::Scan> send_rest(const Connection& connection, const v1::Scan&
   chunk.set_name(scan.name());
   uint64_t offset = scan.received_bytes();
   std::vector<char> buffer(kUploadChunkBytes);
-  while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), stream.gcount() > 0) {
+  // The first message goes also where all bytes are there already: the daemon may have ended before it could complete
+  // the scan.
+  while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())),
+         stream.gcount() > 0 || !chunk.name().empty()) {
     chunk.set_offset(offset);
     chunk.set_data(buffer.data(), static_cast<size_t>(stream.gcount()));
     if (!writer->Write(chunk)) break;

@@ -35,7 +35,8 @@ def link_sources(out):
 
 def run_protoc(arguments, proto, out):
     """Messages with type stubs for all of the schema, callable stubs for its services."""
-    names = sorted(str(path.relative_to(proto)) for folder in ("lipofill", "google/rpc") for path in (proto / folder).rglob("*.proto"))
+    files = [path for folder in ("lipofill", "google/rpc") for path in (proto / folder).rglob("*.proto")]
+    names = sorted(str(path.relative_to(proto)) for path in files)
     services = [name for name in names if name.endswith("_service.proto")]
     include = [arguments.protoc, f"-I{proto}"]
     subprocess.run([*include, f"--python_out={out}", f"--pyi_out={out}", *names], check=True)
@@ -110,7 +111,8 @@ def main():
     link_sources(out)
     services = run_protoc(arguments, proto, out)
     move_google_rpc(out)
-    (out / "lipofill/v1/__init__.py").write_text('"""The messages and services of lipofill.v1, generated from the wire schema."""\n')
+    about = '"""The messages and services of lipofill.v1, generated from the wire schema."""\n'
+    (out / "lipofill/v1/__init__.py").write_text(about)
     index_messages(proto)
     for service_file in services:
         write_service_stubs(proto, out, service_file)

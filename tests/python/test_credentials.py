@@ -40,6 +40,6 @@ def test_the_token_is_read_for_every_call(tmp_path, daemon):
 def test_credentials_come_from_the_environment(monkeypatch, tmp_path):
     (tmp_path / "token").write_text("one")
     monkeypatch.setenv("LIPOFILL_TOKEN_FILE", str(tmp_path / "token"))
-    monkeypatch.setenv("LIPOFILL_CA_FILE", "ca.pem")
+    monkeypatch.setenv("LIPOFILL_TLS_CA", "ca.pem")
     credentials = lipofill.Credentials.from_environment()
     assert credentials.uses_tls and credentials.metadata() == [("authorization", "Bearer one")]

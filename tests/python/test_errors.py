@@ -2,6 +2,7 @@
 
 import pickle
 import time
+from concurrent import futures
 
 import grpc
 import pytest
@@ -76,3 +77,20 @@ def test_an_error_survives_another_process():
     error = lipofill.InvalidArgumentError("no", violations=[lipofill.FieldViolation("a", "b")], reason="R")
     again = pickle.loads(pickle.dumps(error))
     assert str(again) == str(error) and again.reason == "R"
+
+
+def test_a_call_that_the_daemon_could_not_end_counts_as_not_answered():
+    def answer(_, context):
+        context.abort(grpc.StatusCode.CANCELLED, "")
+
+    handler = grpc.method_handlers_generic_handler(
+        "lipofill.v1.PatientService", {"GetPatient": grpc.unary_unary_rpc_method_handler(answer)}
+    )
+    server = grpc.server(futures.ThreadPoolExecutor(1))
+    server.add_generic_rpc_handlers((handler,))
+    port = server.add_insecure_port("127.0.0.1:0")
+    server.start()
+    with lipofill.Connection(f"127.0.0.1:{port}", retry=lipofill.RetryPolicy(patience_s=0)) as connection:
+        with pytest.raises(lipofill.UnavailableError, match="ended before it answered"):
+            connection.patients.get("patients/a")
+    server.stop(None)

@@ -45,7 +45,8 @@ def test_the_package_installs(tmp_path):
         assert (tmp_path / "site" / "lipofill" / name).exists(), name
     program = "import lipofill, lipofill.v1.plan_pb2; print(lipofill.Plan('a').square(1, 1, n_xi=1, n_eta=1).to_json())"
     command = [sys.executable, "-c", program]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, env={**environment, "PYTHONPATH": str(tmp_path / "site")})
+    environment["PYTHONPATH"] = str(tmp_path / "site")
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, env=environment)
     assert done.returncode == 0 and "length_xi_mm" in done.stdout, done.stderr
 
 

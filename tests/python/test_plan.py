@@ -78,7 +78,8 @@ def test_a_landmarks_file_that_is_wrong_is_named(tmp_path, content, complaint):
 
 
 def test_landmarks_are_in_millimetres_whatever_their_file_says(tmp_path):
-    (tmp_path / "marks.json").write_text('{"units": "cm", "before": {"tip": [1, 2, 3]}, "axes": {"left": [1, 0, 0], "up": [0, 1, 0], "forward": [0, 0, 1]}}')
+    axes = {"left": [1, 0, 0], "up": [0, 1, 0], "forward": [0, 0, 1]}
+    (tmp_path / "marks.json").write_text(json.dumps({"units": "cm", "before": {"tip": [1, 2, 3]}, "axes": axes}))
     plan = lipofill.Plan(folder=tmp_path).face("face.obj", corners=[], n_xi=2, n_eta=2, landmarks="marks.json#before")
     region = plan.model_with_landmarks().scan_region
     assert (region.landmarks_mm["tip"].x, region.landmarks_mm["tip"].z) == (10, 30)

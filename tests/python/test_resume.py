@@ -146,6 +146,25 @@ def test_an_upload_begins_where_an_earlier_one_ended(tmp_path, mortal, patient_c
     assert first[0].fraction == pytest.approx(min(begun.received_bytes + (1 << 20), size) / size)
 
 
+def test_an_upload_of_which_only_the_end_is_missing_is_completed(tmp_path, mortal, patient_connection):
+    write_sheet(tmp_path / "sheet.obj", 250)
+    size = (tmp_path / "sheet.obj").stat().st_size
+    patient = patient_connection.patients.create().name
+    announced = patient_connection.scans.announce(patient, tmp_path / "sheet.obj")
+
+    def kill_when_all_is_there():
+        # What was received is then read as a surface, which takes a while: the daemon does not come to its end.
+        while patient_connection.scans.get(announced.name).received_bytes < size:
+            pass
+        restart(mortal)
+
+    killer = threading.Thread(target=kill_when_all_is_there)
+    killer.start()
+    scan = patient_connection.scans.upload(patient, tmp_path / "sheet.obj")
+    killer.join()
+    assert scan.name == announced.name and scan.complete and scan.report.triangles == 2 * 250 * 250
+
+
 def test_a_model_is_built_across_a_restart(mortal, patient_connection):
     patient = patient_connection.patients.create().name
     spec = make_plate().model

@@ -47,8 +47,8 @@ from lipofill.watching import Watch
 __version__ = "0.1.0"
 __all__ = [
     "AbortedError", "AlreadyExistsError", "Array", "CancelledError", "Connection", "Credentials", "Daemon", "DataLossError",
-    "DeadlineExceededError", "FailedPreconditionError", "FieldViolation", "Frame", "InvalidArgumentError", "LipofillError", "Meshes",
-    "NotFoundError", "PermissionDeniedError", "Plan", "Progress", "ResourceExhaustedError", "RetryPolicy", "Run", "Series",
+    "DeadlineExceededError", "FailedPreconditionError", "FieldViolation", "Frame", "InvalidArgumentError", "LipofillError",
+    "Meshes", "NotFoundError", "PermissionDeniedError", "Plan", "Progress", "ResourceExhaustedError", "RetryPolicy", "Run", "Series",
     "Simulation", "SimulationFailedError", "UnauthenticatedError", "UnavailableError", "Watch", "at_chart", "at_position", "box",
     "by_landmarks", "constant", "disc", "print_progress", "samples",
 ]  # fmt: skip

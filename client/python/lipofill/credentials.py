@@ -54,12 +54,12 @@ class Credentials:
 
     @classmethod
     def from_environment(cls) -> Credentials:
-        """LIPOFILL_CA_FILE, LIPOFILL_CERTIFICATE_FILE, LIPOFILL_KEY_FILE, LIPOFILL_TOKEN_FILE, LIPOFILL_SERVER_NAME."""
+        """LIPOFILL_TLS_CA, LIPOFILL_TLS_CERT, LIPOFILL_TLS_KEY, LIPOFILL_TOKEN_FILE, as the command line takes them."""
 
         def given(name: str) -> Optional[str]:
             return os.environ.get(f"LIPOFILL_{name}") or None
 
-        return cls(given("CA_FILE"), given("CERTIFICATE_FILE"), given("KEY_FILE"), given("TOKEN_FILE"), given("SERVER_NAME"))
+        return cls(given("TLS_CA"), given("TLS_CERT"), given("TLS_KEY"), given("TOKEN_FILE"))
 
     @property
     def uses_tls(self) -> bool:

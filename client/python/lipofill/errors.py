@@ -204,6 +204,10 @@ def error_from_call(error: Any, server: str) -> LipofillError:
     status = _status_of(error)
     if not status.details and error.code() is grpc.StatusCode.UNAVAILABLE:
         status.message = f"no daemon answers at {server}; start lipofilld or name another ({status.message})"
+    elif not status.details and error.code() is grpc.StatusCode.CANCELLED:
+        # Calls here are not cancelled by their caller: the daemon ended, and with it what was under way.
+        status.code = grpc.StatusCode.UNAVAILABLE.value[0]
+        status.message = f"the daemon at {server} ended before it answered"
     elif not status.details and error.code() is grpc.StatusCode.DEADLINE_EXCEEDED:
         status.message = f"the daemon at {server} did not answer in time"
     return error_from_status(status)

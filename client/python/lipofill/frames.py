@@ -113,8 +113,15 @@ class StreamAssembler:
         if not piece.last:
             return None
         return Frame(
-            piece.epoch, piece.sequence, piece.time_s, piece.skipped_frames, piece.end, piece.preview, self._fields.take(), self.meshes
-        )  # fmt: skip
+            epoch=piece.epoch,
+            sequence=piece.sequence,
+            time_s=piece.time_s,
+            skipped_frames=piece.skipped_frames,
+            end=piece.end,
+            preview=piece.preview,
+            fields=self._fields.take(),
+            meshes=self.meshes,
+        )
 
 
 def meshes_from_slices(slices: Iterator[pb.MeshSlice]) -> Meshes:

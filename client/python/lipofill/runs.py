@@ -7,7 +7,7 @@ from contextlib import suppress
 from types import TracebackType
 from typing import TYPE_CHECKING, Optional, Type
 
-from lipofill.errors import NotFoundError
+from lipofill.errors import NotFoundError, PermissionDeniedError
 from lipofill.plans import Plan, unit_name
 from lipofill.progress import ProgressCallback
 from lipofill.simulations import Simulation
@@ -65,7 +65,7 @@ class Run(Simulation):
             made = connection.simulations.create(simulation, display_name=display_name_of(plan.message.name))
         except BaseException:
             if made_patient:
-                connection.patients.delete(patient, force=True)
+                _delete_patient(connection, patient)
             raise
         return cls(connection, made.name, plan, patient, model, keep, made_patient)
 
@@ -77,13 +77,19 @@ class Run(Simulation):
             self.discard()
 
     def discard(self) -> None:
-        """Deletes the simulation, its model and, where it was made for the run, the patient with the scans."""
+        """Deletes the simulation, its model and, where it was made for the run and the caller may, the patient with the scans."""
         with suppress(NotFoundError):
             self.delete()
         with suppress(NotFoundError):
             self._connection.models.delete(self.model.name)
         if self._made_patient:
-            self._connection.patients.delete(self.patient, force=True)
+            _delete_patient(self._connection, self.patient)
+
+
+def _delete_patient(connection: Connection, patient: str) -> None:
+    """A planner may make patients, but needs an admin to delete them: then it stays."""
+    with suppress(PermissionDeniedError):
+        connection.patients.delete(patient, force=True)
 
 
 def _upload(

@@ -61,7 +61,8 @@ class _Chunks:
         size, offset, name = self._scan.size_bytes, self._scan.received_bytes, self._scan.name
         with open(self._file, "rb") as stream:
             stream.seek(offset)
-            for data in iter(lambda: stream.read(CHUNK_BYTES), b""):
+            # Also where all bytes are there already: the daemon may have ended before it could complete the scan.
+            while (data := stream.read(CHUNK_BYTES)) or name:
                 yield pb.UploadScanRequest(name=name, offset=offset, data=data)
                 offset, name = offset + len(data), ""
                 report(self._progress, "upload", offset / max(size, 1), f"{offset} of {size} bytes of {self._file.name}")
@@ -108,7 +109,7 @@ class Scans:
         path = Path(file)
         if path.suffix.lower() not in _FORMATS:
             raise InvalidArgumentError(f"scan file {path}: '{path.suffix}' is not one of {', '.join(_FORMATS)}")
-        scan = self._announce(patient, path, unit)
+        scan = self.announce(patient, path, unit=unit)
         attempts = Attempts(self._connection.retry, True)
         while not scan.complete:
             try:
@@ -134,8 +135,9 @@ class Scans:
             raise chunks.problem
         return scan
 
-    def _announce(self, patient: str, path: Path, unit: str) -> pb.Scan:
-        """The request id is made of the content, so that a repeated upload finds what the first one began."""
+    def announce(self, patient: str, file: Union[str, os.PathLike[str]], *, unit: str = "mm") -> pb.Scan:
+        """Tells of a scan to come. The request id is made of the content: a repeated upload finds what the first one began."""
+        path = Path(file)
         digest, scan_format = sha256_of(path), _FORMATS[path.suffix.lower()]
         identity = hashlib.sha256(f"{patient} {digest} {scan_format} {unit}".encode()).hexdigest()
         request = pb.CreateScanRequest(

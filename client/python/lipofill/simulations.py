@@ -3,10 +3,17 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Callable, Iterator, Optional, Sequence, Type, TypeVar
 
-from lipofill.errors import DeadlineExceededError, LipofillError, NotFoundError, SimulationFailedError
+from lipofill.errors import (
+    DeadlineExceededError,
+    FailedPreconditionError,
+    LipofillError,
+    NotFoundError,
+    SimulationFailedError,
+)
 from lipofill.frames import Frame
 from lipofill.progress import ProgressCallback, report
 from lipofill.series import Series, fetch_series
@@ -61,8 +68,10 @@ class Simulation:
     def __exit__(
         self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
     ) -> None:
-        if not has_ended(self.get()):
-            self.stop()
+        # It may come to its end between the two calls, or have been deleted.
+        with suppress(FailedPreconditionError, NotFoundError):
+            if not has_ended(self.get()):
+                self.stop()
 
     def get(self) -> messages.Simulation:
         """As it is now: state, reason, plan and summary."""

@@ -9,14 +9,17 @@ const withoutEval = {
   name: "without-eval",
   transform: (code: string, id: string) =>
     id.includes("node_modules") && /Function\(["']return this["']\)/.test(code)
-      ? { code: code.replace(/(?:new )?Function\(["']return this["']\)\(\)/g, "globalThis"), map: null } : undefined,
+      ? { code: code.replace(/(?:new )?Function\(["']return this["']\)\(\)/g, "globalThis"), map: null }
+      : undefined,
 };
 
 export default defineConfig({
   plugins: [withoutEval],
   root: here("."),
   base: "./",
-  resolve: { alias: { "@wire": here("../../build/web/wire/lipofill/v1"), "@google": here("../../build/web/wire/google") } },
+  resolve: {
+    alias: { "@wire": here("../../build/web/wire/lipofill/v1"), "@google": here("../../build/web/wire/google") },
+  },
   esbuild: { jsx: "automatic", jsxImportSource: "preact" },
   cacheDir: here("../../build/web/vite-cache"),
   build: {

@@ -45,7 +45,8 @@ export function isLoopback(host: string): boolean {
 function parseAddress(text: string): { host: string; port: number } {
   const match = /^(?:\[([0-9a-fA-F:]+)\]|([^:]+)):(\d{1,5})$/.exec(text);
   const port = match === null ? NaN : Number(match[3]);
-  if (match === null || port > 65535) throw new UsageError(`--listen is '${text}', must be HOST:PORT with a port of at most 65535`);
+  if (match === null || port > 65535)
+    throw new UsageError(`--listen is '${text}', must be HOST:PORT with a port of at most 65535`);
   return { host: match[1] ?? match[2], port };
 }
 
@@ -79,7 +80,9 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
   if (values.help) return "help";
   const { host, port } = parseAddress(values.listen!);
   if (!isLoopback(host) && !values["insecure-listen-anywhere"]) {
-    throw new UsageError(`--listen is '${values.listen}', which others can reach in plain text; see --insecure-listen-anywhere`);
+    throw new UsageError(
+      `--listen is '${values.listen}', which others can reach in plain text; see --insecure-listen-anywhere`,
+    );
   }
   if (!/^(unix:.+|[^:]+:\d{1,5}|\[.+\]:\d{1,5})$/.test(values.daemon!)) {
     throw new UsageError(`--daemon is '${values.daemon}', must be host:port or unix:/path`);
@@ -95,7 +98,12 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
     daemon: values.daemon!,
     daemonCa: values["daemon-ca"]!,
     page: checkFolder("--page", values.page ?? join(beside, "page"), "index.html"),
-    samples: values.samples === undefined ? (existsSync(examples) ? examples : "") : checkFolder("--samples", values.samples, "plans"),
+    samples:
+      values.samples === undefined
+        ? existsSync(examples)
+          ? examples
+          : ""
+        : checkFolder("--samples", values.samples, "plans"),
     portFile: values["port-file"]!,
   };
 }

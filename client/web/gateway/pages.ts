@@ -62,7 +62,9 @@ export function servePages(page: string, samples: string) {
     if (request.method !== "GET" && request.method !== "HEAD") return refuse(response, 405, "only GET");
     const path = (request.url ?? "/").split("?")[0];
     const sample = path.startsWith("/samples/") && samples !== "";
-    const file = sample ? locate(samples, path.slice("/samples/".length)) : locate(page, path === "/" ? "/index.html" : path);
+    const file = sample
+      ? locate(samples, path.slice("/samples/".length))
+      : locate(page, path === "/" ? "/index.html" : path);
     if (file === undefined) return refuse(response, 404, "not found");
     void sendFile(file, request, response);
   };

@@ -51,7 +51,10 @@ function answer(from: Headers, context: HandlerContext): void {
 /** What the daemon says stays as it is; that it cannot be reached is said in words for people. */
 function explain(cause: unknown): ConnectError {
   const error = ConnectError.from(cause);
-  const unreachable = error.code === Code.Unavailable && error.details.length === 0 && /ECONN|ENOENT|socket|EPIPE/i.test(error.rawMessage);
+  const unreachable =
+    error.code === Code.Unavailable &&
+    error.details.length === 0 &&
+    /ECONN|ENOENT|socket|EPIPE/i.test(error.rawMessage);
   return unreachable ? new ConnectError("the daemon cannot be reached", Code.Unavailable) : error;
 }
 
@@ -62,7 +65,13 @@ async function* only<T>(value: T): AsyncIterable<T> {
 function makeUnary(transport: Transport, method: DescMethodUnary) {
   return async (request: Message, context: HandlerContext): Promise<Message> => {
     try {
-      const response = await transport.unary(method, context.signal, context.timeoutMs(), forward(context.requestHeader), request);
+      const response = await transport.unary(
+        method,
+        context.signal,
+        context.timeoutMs(),
+        forward(context.requestHeader),
+        request,
+      );
       answer(response.header, context);
       return response.message;
     } catch (error) {
@@ -71,9 +80,20 @@ function makeUnary(transport: Transport, method: DescMethodUnary) {
   };
 }
 
-async function* passStream(transport: Transport, method: DescMethodStreaming, requests: AsyncIterable<Message>, context: HandlerContext) {
+async function* passStream(
+  transport: Transport,
+  method: DescMethodStreaming,
+  requests: AsyncIterable<Message>,
+  context: HandlerContext,
+) {
   try {
-    const response = await transport.stream(method, context.signal, context.timeoutMs(), forward(context.requestHeader), requests);
+    const response = await transport.stream(
+      method,
+      context.signal,
+      context.timeoutMs(),
+      forward(context.requestHeader),
+      requests,
+    );
     answer(response.header, context);
     yield* response.message;
   } catch (error) {
@@ -87,13 +107,16 @@ function makeHandler(transport: Transport, method: DescMethod) {
       return makeUnary(transport, method as DescMethodUnary);
     case "client_streaming":
       return async (requests: AsyncIterable<Message>, context: HandlerContext): Promise<Message> => {
-        for await (const response of passStream(transport, method as DescMethodStreaming, requests, context)) return response;
+        for await (const response of passStream(transport, method as DescMethodStreaming, requests, context))
+          return response;
         throw new ConnectError("the daemon gave no answer", Code.Internal);
       };
     case "server_streaming":
-      return (request: Message, context: HandlerContext) => passStream(transport, method as DescMethodStreaming, only(request), context);
+      return (request: Message, context: HandlerContext) =>
+        passStream(transport, method as DescMethodStreaming, only(request), context);
     default:
-      return (requests: AsyncIterable<Message>, context: HandlerContext) => passStream(transport, method as DescMethodStreaming, requests, context);
+      return (requests: AsyncIterable<Message>, context: HandlerContext) =>
+        passStream(transport, method as DescMethodStreaming, requests, context);
   }
 }
 
@@ -101,7 +124,9 @@ function makeHandler(transport: Transport, method: DescMethod) {
 export function passOn(transport: Transport): (router: ConnectRouter) => void {
   return (router) => {
     for (const service of services as DescService[]) {
-      const handlers = Object.fromEntries(service.methods.map((method) => [method.localName, makeHandler(transport, method)]));
+      const handlers = Object.fromEntries(
+        service.methods.map((method) => [method.localName, makeHandler(transport, method)]),
+      );
       router.service(service, handlers as never);
     }
   };

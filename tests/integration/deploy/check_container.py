@@ -42,18 +42,19 @@ def closure(packages):
     return found, [name for name in packages if name not in depends]
 
 
-def owner_of(library):
-    for path in (library, str(pathlib.Path(library).resolve())):
-        owner = run("dpkg", "-S", path).split(":")[0]
-        if owner:
-            return owner
-    return None
+def owners_of(libraries):
+    """The package of each file, found in one search: a search reads the lists of all packages."""
+    paths = {name for library in libraries for name in (library, str(pathlib.Path(library).resolve()))}
+    found = {}
+    for line in run("dpkg", "-S", *sorted(paths)).splitlines():
+        owner, _, path = line.partition(": ")
+        found[path] = owner.split(":")[0].split(",")[0]
+    return {library: found.get(library) or found.get(str(pathlib.Path(library).resolve())) for library in libraries}
 
 
 def missing_libraries(programs, packages):
     for program in programs:
-        for library in re.findall(r"=> (/\S+)", run("ldd", program)):
-            owner = owner_of(library)
+        for library, owner in owners_of(re.findall(r"=> (/\S+)", run("ldd", program))).items():
             if owner not in packages:
                 yield f"{pathlib.Path(program).name} loads {library} of {owner}, which the image does not have"
 

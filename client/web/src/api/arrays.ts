@@ -80,13 +80,23 @@ export class ArrayAssembler {
   add(slice: ArraySlice): void {
     const shape = slice.shape.map(Number);
     const total = shape.reduce((product, n) => product * n, elementSize(slice.type));
-    if (!(total <= mostBytes)) throw new Error(`${slice.name} has ${total} bytes, more than the ${mostBytes} a page can hold`);
+    if (!(total <= mostBytes))
+      throw new Error(`${slice.name} has ${total} bytes, more than the ${mostBytes} a page can hold`);
     const offset = Number(slice.offsetBytes);
     let array = this.open.get(slice.name);
     if (array === undefined) {
       const whole = offset === 0 && slice.data.byteLength === total;
       const { name, unit, type, boxMin, boxMax } = slice;
-      array = { name, unit, type, shape, boxMin, boxMax, received: 0, bytes: whole ? slice.data : new Uint8Array(total) };
+      array = {
+        name,
+        unit,
+        type,
+        shape,
+        boxMin,
+        boxMax,
+        received: 0,
+        bytes: whole ? slice.data : new Uint8Array(total),
+      };
       this.open.set(slice.name, array);
       if (whole) {
         array.received = total;

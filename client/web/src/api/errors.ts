@@ -36,6 +36,9 @@ function messageOf(error: ConnectError): string {
 /** Whether the connection is to blame, not the request. */
 export function isLost(cause: unknown): boolean {
   const error = ConnectError.from(cause);
-  return error.code === Code.Unavailable || (error.code === Code.Unknown && /fetch|network|stream|aborted/i.test(error.rawMessage))
-    || (error.code === Code.Internal && /missing trailer|premature|protocol error/i.test(error.rawMessage));
+  return (
+    error.code === Code.Unavailable ||
+    (error.code === Code.Unknown && /fetch|network|stream|aborted/i.test(error.rawMessage)) ||
+    (error.code === Code.Internal && /missing trailer|premature|protocol error/i.test(error.rawMessage))
+  );
 }

@@ -19,7 +19,12 @@ export function meshesOf(arrays: Map<string, WireArray>): Map<string, Mesh> {
     const name = key.slice(0, -".points".length);
     const cells = arrays.get(`${name}.cells`);
     if (cells === undefined) throw new Error(`the mesh ${name} has points but no cells`);
-    const mesh = { name, points: view(points) as Float32Array, cells: view(cells) as Uint32Array, corners: cells.shape[1] };
+    const mesh = {
+      name,
+      points: view(points) as Float32Array,
+      cells: view(cells) as Uint32Array,
+      corners: cells.shape[1],
+    };
     const n = mesh.points.length / 3;
     if (mesh.cells.some((index) => index >= n)) throw new Error(`the mesh ${name} has a cell with a point it has not`);
     meshes.set(name, mesh);

@@ -17,10 +17,19 @@ function failure(operation: Operation): ConnectError {
     const value = anyUnpack(any, BadRequestSchema);
     return value === undefined ? [] : [{ desc: BadRequestSchema, value }];
   });
-  return new ConnectError(error?.message ?? "the model was not built", (error?.code ?? Code.Internal) as Code, undefined, details);
+  return new ConnectError(
+    error?.message ?? "the model was not built",
+    (error?.code ?? Code.Internal) as Code,
+    undefined,
+    details,
+  );
 }
 
-export async function buildModel(parent: string, spec: ModelSpec, progress: (now: BuildProgress) => void): Promise<Model> {
+export async function buildModel(
+  parent: string,
+  spec: ModelSpec,
+  progress: (now: BuildProgress) => void,
+): Promise<Model> {
   let operation = await patients.buildModel({ requestId: newId(), parent, spec });
   while (!operation.done) {
     progress({ fraction: operation.progress, stage: operation.stage });

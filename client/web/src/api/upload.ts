@@ -1,6 +1,12 @@
 // Scans, on their way to the daemon, a chunk a call: an upload that broke off goes on where it stopped.
 import type { DescMethodUnary } from "@bufbuild/protobuf";
-import { PatientService, ScanFormat, type Scan, type UploadScanRequestSchema, type ScanSchema } from "@wire/patient_service_pb";
+import {
+  PatientService,
+  ScanFormat,
+  type Scan,
+  type UploadScanRequestSchema,
+  type ScanSchema,
+} from "@wire/patient_service_pb";
 import type { ScanUnit } from "@wire/plan_pb";
 import { create } from "@bufbuild/protobuf";
 import { UploadScanRequestSchema as RequestSchema } from "@wire/patient_service_pb";
@@ -11,8 +17,10 @@ const chunkBytes = 1 << 20;
 const mostRetries = 5;
 
 // Browsers cannot stream a request; a stream of one message is on the wire what a unary call is.
-const uploadChunk = { ...PatientService.method.uploadScan, methodKind: "unary" } as unknown as
-  DescMethodUnary<typeof UploadScanRequestSchema, typeof ScanSchema>;
+const uploadChunk = { ...PatientService.method.uploadScan, methodKind: "unary" } as unknown as DescMethodUnary<
+  typeof UploadScanRequestSchema,
+  typeof ScanSchema
+>;
 
 export function formatOf(fileName: string): ScanFormat {
   const ending = fileName.toLowerCase().split(".").pop();
@@ -28,18 +36,33 @@ async function sha256(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
 }
 
 async function send(name: string, offset: number, data: Uint8Array): Promise<Scan> {
-  const response = await transport.unary(uploadChunk, undefined, undefined, undefined, create(RequestSchema, { name, offset: BigInt(offset), data }));
+  const response = await transport.unary(
+    uploadChunk,
+    undefined,
+    undefined,
+    undefined,
+    create(RequestSchema, { name, offset: BigInt(offset), data }),
+  );
   return response.message;
 }
 
 /** @param progress told the share that has arrived, 0 to 1 */
 export async function uploadScan(
-  parent: string, fileName: string, content: ArrayBuffer, unit: ScanUnit, progress: (share: number) => void,
+  parent: string,
+  fileName: string,
+  content: ArrayBuffer,
+  unit: ScanUnit,
+  progress: (share: number) => void,
 ): Promise<Scan> {
   const bytes = new Uint8Array(content);
   const format = formatOf(fileName);
   let scan = await patients.createScan({
-    requestId: newId(), parent, format, unit, sizeBytes: BigInt(bytes.length), sha256: await sha256(bytes),
+    requestId: newId(),
+    parent,
+    format,
+    unit,
+    sizeBytes: BigInt(bytes.length),
+    sha256: await sha256(bytes),
   });
   let offset = 0;
   for (let retries = 0; !scan.complete; ) {

@@ -67,12 +67,19 @@ class Progress {
   private assembler = new ArrayAssembler();
   private unacknowledged = 0;
 
-  constructor(private readonly options: WatchOptions, private readonly listener: Listener) {}
+  constructor(
+    private readonly options: WatchOptions,
+    private readonly listener: Listener,
+  ) {}
 
   request() {
     const { simulation, fields, maxRateHz } = this.options;
     return {
-      simulation, fields, maxRateHz, heartbeatMs, viewer: this.viewer,
+      simulation,
+      fields,
+      maxRateHz,
+      heartbeatMs,
+      viewer: this.viewer,
       fieldType: ArrayType.UINT16,
       maxUnacknowledgedFrames: window,
       seenEpoch: this.epoch,
@@ -98,7 +105,10 @@ class Progress {
       fields.forEach((array) => this.assembler.add(array));
       if (!last) return;
       [this.epoch, this.sequence, this.ended] = [epoch, sequence, end];
-      this.listener.frame({ epoch, sequence, timeS, preview, end, fields: this.assembler.take() }, Number(skippedFrames));
+      this.listener.frame(
+        { epoch, sequence, timeS, preview, end, fields: this.assembler.take() },
+        Number(skippedFrames),
+      );
       if (!end) this.acknowledge();
     }
   }
@@ -109,7 +119,9 @@ class Progress {
     this.unacknowledged = 0;
     const { simulation } = this.options;
     // What is lost with the connection is acknowledged by coming back; that the viewer is gone shows in the stream.
-    frames.acknowledgeFrame({ simulation, viewer: this.viewer, epoch: this.epoch, sequence: this.sequence }).catch(() => undefined);
+    frames
+      .acknowledgeFrame({ simulation, viewer: this.viewer, epoch: this.epoch, sequence: this.sequence })
+      .catch(() => undefined);
   }
 }
 

@@ -23,13 +23,35 @@ const lookEveryMs = 1000;
 /** Of what ended, only so many of the newest. */
 const mostEnded = 24;
 
-const order: Simulation_State[] = [Simulation_State.FAILED, Simulation_State.RUNNING, Simulation_State.QUEUED, Simulation_State.PAUSED, Simulation_State.READY, Simulation_State.SETTLED, Simulation_State.FINISHED, Simulation_State.STOPPED];
+const order: Simulation_State[] = [
+  Simulation_State.FAILED,
+  Simulation_State.RUNNING,
+  Simulation_State.QUEUED,
+  Simulation_State.PAUSED,
+  Simulation_State.READY,
+  Simulation_State.SETTLED,
+  Simulation_State.FINISHED,
+  Simulation_State.STOPPED,
+];
 const rank = ({ state }: Simulation): number => order.indexOf(state);
 const age = ({ createTime }: Simulation): number => -Number(createTime?.seconds ?? 0n);
 const live = [Simulation_State.RUNNING, Simulation_State.QUEUED, Simulation_State.PAUSED, Simulation_State.READY];
 const isLive = ({ state }: Simulation): boolean => live.includes(state);
 /** What cards show: plans with painted zones are long. */
-const readMask = { paths: ["name", "display_name", "state", "reason", "summary", "viewers", "create_time", "queue_position", "parked", "spec.injections"] };
+const readMask = {
+  paths: [
+    "name",
+    "display_name",
+    "state",
+    "reason",
+    "summary",
+    "viewers",
+    "create_time",
+    "queue_position",
+    "parked",
+    "spec.injections",
+  ],
+};
 
 async function listAll(signal: AbortSignal): Promise<Simulation[]> {
   const all: Simulation[] = [];
@@ -43,7 +65,10 @@ async function listAll(signal: AbortSignal): Promise<Simulation[]> {
 
 function choose(all: Simulation[]): Simulation[] {
   const shown = all.filter(({ displayName }) => displayName !== "check-of-a-plan");
-  const ended = shown.filter((one) => !isLive(one)).sort((a, b) => age(a) - age(b)).slice(0, mostEnded);
+  const ended = shown
+    .filter((one) => !isLive(one))
+    .sort((a, b) => age(a) - age(b))
+    .slice(0, mostEnded);
   return [...shown.filter(isLive), ...ended].sort((a, b) => rank(a) - rank(b) || age(a) - age(b));
 }
 
@@ -55,7 +80,10 @@ async function look(leave: AbortSignal, before: Map<string, { steps: bigint; at:
       const steps = simulation.summary?.steps ?? 0n;
       const last = before.get(simulation.name);
       before.set(simulation.name, { steps, at: now });
-      const stepsPerS = last === undefined || simulation.state !== Simulation_State.RUNNING ? 0 : (1000 * Number(steps - last.steps)) / (now - last.at);
+      const stepsPerS =
+        last === undefined || simulation.state !== Simulation_State.RUNNING
+          ? 0
+          : (1000 * Number(steps - last.steps)) / (now - last.at);
       return { simulation, stepsPerS };
     });
     trouble.value = "";
@@ -71,33 +99,102 @@ function Entry({ card: { simulation, stepsPerS } }: { card: Card }) {
   const wanted = (simulation.spec?.injections ?? []).reduce((sum, { volumeMl }) => sum + (volumeMl ?? 0), 0);
   return (
     <article class={`card ${stateClass(simulation)}`} aria-label={simulation.displayName || simulation.name}>
-      <header><h2>{simulation.displayName || simulation.name.split("/")[1]}</h2><span class="state">{word}{simulation.parked && ", parked"}</span></header>
+      <header>
+        <h2>{simulation.displayName || simulation.name.split("/")[1]}</h2>
+        <span class="state">
+          {word}
+          {simulation.parked && ", parked"}
+        </span>
+      </header>
       <div class="card-body">
-        <div class="thumb">{pictures.value.get(simulation.name) ? <img src={pictures.value.get(simulation.name)} alt="The face as it is now" /> : <span class="quiet">no picture yet</span>}</div>
+        <div class="thumb">
+          {pictures.value.get(simulation.name) ? (
+            <img src={pictures.value.get(simulation.name)} alt="The face as it is now" />
+          ) : (
+            <span class="quiet">no picture yet</span>
+          )}
+        </div>
         <dl>
-          <div><dt>Volume</dt><dd>{(summary?.injectedMl ?? 0).toFixed(1)}<small> / {wanted.toFixed(1)} mL</small></dd></div>
-          <div><dt>Pressure</dt><dd><i class="swatch" style={{ background: cssOf(pressureBands[bandOf(pressure)].colour) }} aria-hidden="true" />{pressure.toFixed(1)}<small> mmHg</small></dd></div>
-          <div><dt>Skin rises</dt><dd>{(summary?.skinMaxDisplacementMm ?? 0).toFixed(1)}<small> mm</small></dd></div>
-          <div><dt>Rate</dt><dd>{stepsPerS.toFixed(0)}<small> steps/s</small></dd></div>
-          <div><dt>Time</dt><dd>{(summary?.timeS ?? 0).toFixed(1)}<small> s</small></dd></div>
-          <div><dt>Viewers</dt><dd>{simulation.viewers}</dd></div>
+          <div>
+            <dt>Volume</dt>
+            <dd>
+              {(summary?.injectedMl ?? 0).toFixed(1)}
+              <small> / {wanted.toFixed(1)} mL</small>
+            </dd>
+          </div>
+          <div>
+            <dt>Pressure</dt>
+            <dd>
+              <i
+                class="swatch"
+                style={{ background: cssOf(pressureBands[bandOf(pressure)].colour) }}
+                aria-hidden="true"
+              />
+              {pressure.toFixed(1)}
+              <small> mmHg</small>
+            </dd>
+          </div>
+          <div>
+            <dt>Skin rises</dt>
+            <dd>
+              {(summary?.skinMaxDisplacementMm ?? 0).toFixed(1)}
+              <small> mm</small>
+            </dd>
+          </div>
+          <div>
+            <dt>Rate</dt>
+            <dd>
+              {stepsPerS.toFixed(0)}
+              <small> steps/s</small>
+            </dd>
+          </div>
+          <div>
+            <dt>Time</dt>
+            <dd>
+              {(summary?.timeS ?? 0).toFixed(1)}
+              <small> s</small>
+            </dd>
+          </div>
+          <div>
+            <dt>Viewers</dt>
+            <dd>{simulation.viewers}</dd>
+          </div>
         </dl>
       </div>
-      <a href="#plan" onClick={() => {
-        step.value = "run";
-        void openExisting(simulation);
-      }}>Open in the planner</a>
+      <a
+        href="#plan"
+        onClick={() => {
+          step.value = "run";
+          void openExisting(simulation);
+        }}
+      >
+        Open in the planner
+      </a>
       {simulation.state === Simulation_State.FAILED && <p class="complaint">{simulation.reason}</p>}
     </article>
   );
 }
 
 function Totals() {
-  const count = (state: Simulation_State): number => cards.value.filter(({ simulation }) => simulation.state === state).length;
+  const count = (state: Simulation_State): number =>
+    cards.value.filter(({ simulation }) => simulation.state === state).length;
   return (
     <div class="totals" role="status">
-      <span><b>{count(Simulation_State.RUNNING)}</b> running</span><span><b>{count(Simulation_State.QUEUED)}</b> queued</span><span><b>{count(Simulation_State.PAUSED)}</b> paused</span>
-      <span class={count(Simulation_State.FAILED) > 0 ? "alarm" : ""}><b>{count(Simulation_State.FAILED)}</b> failed</span><span><b>{cards.value.length}</b> shown</span>
+      <span>
+        <b>{count(Simulation_State.RUNNING)}</b> running
+      </span>
+      <span>
+        <b>{count(Simulation_State.QUEUED)}</b> queued
+      </span>
+      <span>
+        <b>{count(Simulation_State.PAUSED)}</b> paused
+      </span>
+      <span class={count(Simulation_State.FAILED) > 0 ? "alarm" : ""}>
+        <b>{count(Simulation_State.FAILED)}</b> failed
+      </span>
+      <span>
+        <b>{cards.value.length}</b> shown
+      </span>
       {trouble.value && <span class="alarm">{trouble.value} Trying again.</span>}
     </div>
   );
@@ -125,7 +222,11 @@ export function Dashboard() {
     <main class="dashboard">
       <h1 class="sr-only">Simulations</h1>
       <Totals />
-      <div class="cards">{cards.value.map((card) => <Entry key={card.simulation.name} card={card} />)}</div>
+      <div class="cards">
+        {cards.value.map((card) => (
+          <Entry key={card.simulation.name} card={card} />
+        ))}
+      </div>
       {cards.value.length === 0 && !trouble.value && <p class="empty">No simulations yet.</p>}
     </main>
   );

@@ -13,6 +13,8 @@ import { Viewport } from "../scene/viewport";
 
 const [width, height] = [320, 240];
 const pauseMs = 250;
+/** So that little looks like little. */
+const leastScaleMm = 3;
 
 export class Thumbnails {
   private readonly holder = document.createElement("div");
@@ -25,7 +27,13 @@ export class Thumbnails {
   private next = 0;
 
   constructor(private readonly done: (name: string, url: string) => void) {
-    Object.assign(this.holder.style, { position: "fixed", left: "-2000px", top: "0", width: `${width}px`, height: `${height}px` });
+    Object.assign(this.holder.style, {
+      position: "fixed",
+      left: "-2000px",
+      top: "0",
+      width: `${width}px`,
+      height: `${height}px`,
+    });
     document.body.append(this.holder);
     this.viewport = new Viewport(this.holder);
     void this.turn();
@@ -54,7 +62,12 @@ export class Thumbnails {
     for (let k = 0; k < this.wanted.length; ++k) {
       const one = this.wanted[(this.next + k) % this.wanted.length];
       // To look at one that is parked would wake it.
-      if (one.state === Simulation_State.FAILED || one.parked || this.shown.get(one.name) === (one.summary?.steps ?? 0n)) continue;
+      if (
+        one.state === Simulation_State.FAILED ||
+        one.parked ||
+        this.shown.get(one.name) === (one.summary?.steps ?? 0n)
+      )
+        continue;
       this.next = (this.next + k + 1) % this.wanted.length;
       return one;
     }
@@ -88,7 +101,10 @@ export class Thumbnails {
     this.leave.signal.addEventListener("abort", end);
     let mesh: Mesh | undefined;
     try {
-      for await (const { message } of frames.watch({ simulation, fields: ["skin.displacement"], fieldType: ArrayType.UINT16 }, { signal: enough.signal })) {
+      for await (const { message } of frames.watch(
+        { simulation, fields: ["skin.displacement"], fieldType: ArrayType.UINT16 },
+        { signal: enough.signal },
+      )) {
         if (message.case === "mesh") {
           message.value.arrays.forEach((array) => assembler.add(array));
           if (message.value.last) mesh = meshesOf(assembler.take()).get("skin");
@@ -115,8 +131,9 @@ export class Thumbnails {
 
 function colour(surface: Surface, displacement: Float32Array): void {
   const moved = new Float32Array(surface.count);
-  for (let k = 0; k < moved.length; ++k) moved[k] = Math.hypot(displacement[3 * k], displacement[3 * k + 1], displacement[3 * k + 2]);
-  const map = mapFor("displacement", largestOf(moved));
+  for (let k = 0; k < moved.length; ++k)
+    moved[k] = Math.hypot(displacement[3 * k], displacement[3 * k + 1], displacement[3 * k + 2]);
+  const map = mapFor("displacement", Math.max(leastScaleMm, largestOf(moved)));
   for (let k = 0; k < moved.length; ++k) {
     if (moved[k] > 0.05) paint(map, moved[k], surface.colours, 3 * k);
     else surface.colours.set(skinColour, 3 * k);
@@ -126,7 +143,10 @@ function colour(surface: Surface, displacement: Float32Array): void {
 
 /** From outside, a little from below: a bulge shows against the light. */
 function viewOf(surface: Surface): { focus: Point; direction: Point; up: Point; halfHeight: number } {
-  const [low, high]: [Point, Point] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+  const [low, high]: [Point, Point] = [
+    [Infinity, Infinity, Infinity],
+    [-Infinity, -Infinity, -Infinity],
+  ];
   const normals = new Float32Array(surface.points.length);
   computeNormals(surface.rest, surface.triangles, normals);
   const outward: Point = [0, 0, 0];
@@ -141,5 +161,10 @@ function viewOf(surface: Surface): { focus: Point; direction: Point; up: Point; 
   const direction = outward.map((v) => v / length) as Point;
   const flat = Math.abs(direction[2]) > 0.99;
   const slanted: Point = flat ? [0, -0.7, 0.714] : direction;
-  return { focus, direction: slanted, up: flat ? [0, 0, 1] : [0, 1, 0], halfHeight: 0.62 * Math.max(...low.map((v, c) => high[c] - v)) };
+  return {
+    focus,
+    direction: slanted,
+    up: flat ? [0, 0, 1] : [0, 1, 0],
+    halfHeight: 0.62 * Math.max(...low.map((v, c) => high[c] - v)),
+  };
 }

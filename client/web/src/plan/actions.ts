@@ -11,7 +11,20 @@ import { toProblem } from "../api/errors";
 import { uploadScan } from "../api/upload";
 import { parseLandmarks } from "./landmarks";
 import { parsePlan } from "./plan_file";
-import { attempt, editPlan, modelIsCurrent, model, patient, plan, region, scan, scanFile, scanMesh, setModel, violations } from "./state";
+import {
+  attempt,
+  editPlan,
+  modelIsCurrent,
+  model,
+  patient,
+  plan,
+  region,
+  scan,
+  scanFile,
+  scanMesh,
+  setModel,
+  violations,
+} from "./state";
 import { toPlanFields } from "./violations";
 
 /** The patient of this page; made up when there is none yet. */
@@ -20,7 +33,13 @@ async function ensurePatient(displayName: string): Promise<string> {
   return patient.value;
 }
 
-const asId = (text: string): string => text.toLowerCase().replace(/\.[^.]*$/, "").replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 63);
+const asId = (text: string): string =>
+  text
+    .toLowerCase()
+    .replace(/\.[^.]*$/, "")
+    .replace(/[^a-z0-9]+/g, "-")
+    .replace(/^-+|-+$/g, "")
+    .slice(0, 63);
 
 export async function pickScan(next: Scan): Promise<void> {
   await attempt("Loading the face", async () => {
@@ -68,7 +87,8 @@ export function usePlan(next: Plan): void {
     if (next.model?.geometry.case === "scanRegion") {
       const into = next.model.geometry.value;
       into.scan = scan.value?.name ?? "";
-      if (Object.keys(into.landmarksMm).length === 0 && before) Object.assign(into, { landmarksMm: before.landmarksMm, axes: before.axes });
+      if (Object.keys(into.landmarksMm).length === 0 && before)
+        Object.assign(into, { landmarksMm: before.landmarksMm, axes: before.axes });
     }
     plan.value = next;
     violations.value = [];
@@ -88,9 +108,14 @@ export async function openSample(name = "jaw_angle"): Promise<void> {
     const next = parsePlan(await (await sample(`plans/${name}.json`)).text());
     const file = next.scan?.file.replace(/^\.\.\//, "") ?? "";
     if (file === "") return usePlan(next);
-    const [face, landmarks] = await Promise.all([sample(file).then((r) => r.arrayBuffer()), sample(next.scan!.landmarksFile.replace(/^\.\.\//, "")).then((r) => r.text())]);
+    const [face, landmarks] = await Promise.all([
+      sample(file).then((r) => r.arrayBuffer()),
+      sample(next.scan!.landmarksFile.replace(/^\.\.\//, "")).then((r) => r.text()),
+    ]);
     const parent = await ensurePatient("synthetic-face");
-    const made = await uploadScan(parent, file.split("/").pop()!, face, ScanUnit.MILLIMETRE, (share) => progress(share, "Sending the face"));
+    const made = await uploadScan(parent, file.split("/").pop()!, face, ScanUnit.MILLIMETRE, (share) =>
+      progress(share, "Sending the face"),
+    );
     const meshes = await collectMeshes(patients.downloadScanMesh({ name: made.name }));
     batch(() => {
       scanFile.value = { name: file.split("/").pop()!, unit: ScanUnit.MILLIMETRE };
@@ -110,7 +135,9 @@ export async function build(): Promise<boolean> {
     const parent = await ensurePatient("square");
     const spec = clone(ModelSpecSchema, plan.value.model!);
     try {
-      const built = await buildModel(parent, spec, ({ fraction, stage }) => progress(fraction, `Building the model: ${stage}`));
+      const built = await buildModel(parent, spec, ({ fraction, stage }) =>
+        progress(fraction, `Building the model: ${stage}`),
+      );
       const meshes = await collectMeshes(patients.downloadModelMesh({ name: built.name }));
       setModel(built, meshes);
     } catch (error) {

@@ -5,18 +5,39 @@ import { SkinPointSchema, type SkinPoint } from "@wire/geometry_pb";
 export type Side = "left" | "right";
 
 export const landmarkNames = [
-  "nasion", "pronasale", "subnasale", "pogonion", "menton",
-  ...["exocanthion", "alare", "cheilion", "gonion", "zygion", "tragion"].flatMap((name) => [`${name}_left`, `${name}_right`]),
+  "nasion",
+  "pronasale",
+  "subnasale",
+  "pogonion",
+  "menton",
+  ...["exocanthion", "alare", "cheilion", "gonion", "zygion", "tragion"].flatMap((name) => [
+    `${name}_left`,
+    `${name}_right`,
+  ]),
 ];
 
 export const landmarkHints: Record<string, string> = {
-  nasion: "root of the nose", pronasale: "tip of the nose", subnasale: "below the nose", pogonion: "front of the chin", menton: "lowest point of the chin",
-  exocanthion: "outer corner of the eye", alare: "wing of the nose", cheilion: "corner of the mouth", gonion: "angle of the jaw", zygion: "widest point of the cheekbone",
+  nasion: "root of the nose",
+  pronasale: "tip of the nose",
+  subnasale: "below the nose",
+  pogonion: "front of the chin",
+  menton: "lowest point of the chin",
+  exocanthion: "outer corner of the eye",
+  alare: "wing of the nose",
+  cheilion: "corner of the mouth",
+  gonion: "angle of the jaw",
+  zygion: "widest point of the cheekbone",
   tragion: "notch above the tragus",
 };
 
 export const zoneNames = ["masseter", "mandibular_angle", "buccal", "malar", "temple", "nasolabial", "chin"];
-export const ligamentNames = ["zygomatic", "masseteric_cutaneous", "mandibular_osteocutaneous", "medial_mandibular", "mental"];
+export const ligamentNames = [
+  "zygomatic",
+  "masseteric_cutaneous",
+  "mandibular_osteocutaneous",
+  "medial_mandibular",
+  "mental",
+];
 
 interface Corner {
   weights: Record<string, number>;
@@ -54,7 +75,9 @@ const sided = (name: string, side: Side): string => (midline.has(name) ? name : 
 
 /** Landmarks without which a region cannot be placed. */
 export function landmarksOf(region: string, side: Side): string[] {
-  return [...new Set(regions[region].corners.flatMap(({ weights }) => Object.keys(weights).map((name) => sided(name, side))))];
+  return [
+    ...new Set(regions[region].corners.flatMap(({ weights }) => Object.keys(weights).map((name) => sided(name, side)))),
+  ];
 }
 
 /** The corners of a region on either side; the mirrored ones in the order that keeps them anticlockwise. */
@@ -64,13 +87,16 @@ export function cornersOf(region: string, side: Side): SkinPoint[] {
       place: {
         case: "landmarks",
         value: {
-          weights: Object.fromEntries(Object.entries(corner.weights).map(([name, weight]) => [sided(name, side), weight])),
+          weights: Object.fromEntries(
+            Object.entries(corner.weights).map(([name, weight]) => [sided(name, side), weight]),
+          ),
           leftMm: side === "left" ? corner.left : -corner.left,
           upMm: corner.up,
           forwardMm: corner.forward,
         },
       },
-    }));
+    }),
+  );
   return side === "left" ? corners : [corners[1], corners[0], corners[3], corners[2]];
 }
 

@@ -30,7 +30,12 @@ export class Chart {
     const [s, t] = [x - i, y - j];
     const row = this.nXi + 1;
     const at: Point = [0, 0, 0];
-    const corners: [number, number][] = [[j * row + i, (1 - s) * (1 - t)], [j * row + i + 1, s * (1 - t)], [(j + 1) * row + i, (1 - s) * t], [(j + 1) * row + i + 1, s * t]];
+    const corners: [number, number][] = [
+      [j * row + i, (1 - s) * (1 - t)],
+      [j * row + i + 1, s * (1 - t)],
+      [(j + 1) * row + i, (1 - s) * t],
+      [(j + 1) * row + i + 1, s * t],
+    ];
     for (const [index, weight] of corners) this.node(index).forEach((v, c) => (at[c] += weight * v));
     return at;
   }

@@ -1,6 +1,13 @@
 // Landmarks: files of them, and points that are given by them.
 import { create } from "@bufbuild/protobuf";
-import { HeadAxesSchema, Vector3Schema, type HeadAxes, type LandmarkPoint, type SkinPoint, type Vector3 } from "@wire/geometry_pb";
+import {
+  HeadAxesSchema,
+  Vector3Schema,
+  type HeadAxes,
+  type LandmarkPoint,
+  type SkinPoint,
+  type Vector3,
+} from "@wire/geometry_pb";
 import type { Point } from "../scene/surface_geometry";
 import { ScanUnit } from "@wire/plan_pb";
 
@@ -21,19 +28,29 @@ export function millimetresPer(unit: ScanUnit): number {
 }
 
 function readPoint(value: unknown, what: string): Point {
-  if (Array.isArray(value) && value.length === 3 && value.every((v) => typeof v === "number" && Number.isFinite(v))) return value as Point;
+  if (Array.isArray(value) && value.length === 3 && value.every((v) => typeof v === "number" && Number.isFinite(v)))
+    return value as Point;
   throw new Error(`${what} is ${JSON.stringify(value)}, must be three numbers`);
 }
 
 /** The JSON of a landmarks file as `lipofill run` takes it: an object "landmarks" of name to [x, y, z], optionally "axes". */
 export function parseLandmarks(text: string, unit: ScanUnit): Landmarks {
   const document = JSON.parse(text) as { landmarks?: Record<string, unknown>; axes?: Record<string, unknown> };
-  if (typeof document !== "object" || document === null || typeof document.landmarks !== "object" || document.landmarks === null) {
+  if (
+    typeof document !== "object" ||
+    document === null ||
+    typeof document.landmarks !== "object" ||
+    document.landmarks === null
+  ) {
     throw new Error('this file has no object "landmarks"');
   }
   const factor = millimetresPer(unit);
-  const points = Object.fromEntries(Object.entries(document.landmarks).map(([name, value]) =>
-    [name, vectorOf(readPoint(value, `landmarks.${name}`).map((v) => v * factor))]));
+  const points = Object.fromEntries(
+    Object.entries(document.landmarks).map(([name, value]) => [
+      name,
+      vectorOf(readPoint(value, `landmarks.${name}`).map((v) => v * factor)),
+    ]),
+  );
   const { axes } = document;
   if (axes === undefined) return { points };
   const [left, up, forward] = ["left", "up", "forward"].map((name) => vectorOf(readPoint(axes[name], `axes.${name}`)));
@@ -42,8 +59,10 @@ export function parseLandmarks(text: string, unit: ScanUnit): Landmarks {
 
 export function writeLandmarks(points: Record<string, Vector3>, axes: HeadAxes | undefined): string {
   const landmarks = Object.fromEntries(Object.entries(points).map(([name, vector]) => [name, pointOf(vector)]));
-  const given = axes?.left && axes.up && axes.forward
-    ? { axes: { left: pointOf(axes.left), up: pointOf(axes.up), forward: pointOf(axes.forward) } } : {};
+  const given =
+    axes?.left && axes.up && axes.forward
+      ? { axes: { left: pointOf(axes.left), up: pointOf(axes.up), forward: pointOf(axes.forward) } }
+      : {};
   return `${JSON.stringify({ units: "mm", ...given, landmarks }, null, 1)}\n`;
 }
 
@@ -51,36 +70,57 @@ const unit = (v: Point): Point => {
   const length = Math.hypot(...v) || 1;
   return v.map((x) => x / length) as Point;
 };
-const cross = (a: Point, b: Point): Point => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const cross = (a: Point, b: Point): Point => [
+  a[1] * b[2] - a[2] * b[1],
+  a[2] * b[0] - a[0] * b[2],
+  a[0] * b[1] - a[1] * b[0],
+];
 const minus = (a: Point, b: Point): Point => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 
 /** The head's axes as given, else guessed from the landmarks: enough to show a face upright; the daemon has its own. */
-export function axesOf(points: Record<string, Vector3>, given: HeadAxes | undefined): { left: Point; up: Point; forward: Point } {
-  if (given?.left && given.up && given.forward) return { left: pointOf(given.left), up: pointOf(given.up), forward: pointOf(given.forward) };
+export function axesOf(
+  points: Record<string, Vector3>,
+  given: HeadAxes | undefined,
+): { left: Point; up: Point; forward: Point } {
+  if (given?.left && given.up && given.forward)
+    return { left: pointOf(given.left), up: pointOf(given.up), forward: pointOf(given.forward) };
   const at = (name: string): Point | undefined => (points[name] ? pointOf(points[name]) : undefined);
   const [top, bottom] = [at("nasion"), at("menton") ?? at("pogonion") ?? at("subnasale")];
-  const pair = ["cheilion", "exocanthion", "zygion", "gonion", "alare"].find((name) => at(`${name}_left`) && at(`${name}_right`));
+  const pair = ["cheilion", "exocanthion", "zygion", "gonion", "alare"].find(
+    (name) => at(`${name}_left`) && at(`${name}_right`),
+  );
   if (!top || !bottom || !pair) return { left: [1, 0, 0], up: [0, 1, 0], forward: [0, 0, 1] };
   const left = unit(minus(at(`${pair}_left`)!, at(`${pair}_right`)!));
   const forward = unit(cross(left, minus(top, bottom)));
   return { left, up: cross(forward, left), forward };
 }
 
-function fromLandmarks(place: LandmarkPoint, points: Record<string, Vector3>, axes: ReturnType<typeof axesOf>): Point | undefined {
+function fromLandmarks(
+  place: LandmarkPoint,
+  points: Record<string, Vector3>,
+  axes: ReturnType<typeof axesOf>,
+): Point | undefined {
   const sum = Object.values(place.weights).reduce((total, weight) => total + weight, 0);
   const at: Point = [0, 0, 0];
   for (const [name, weight] of Object.entries(place.weights)) {
     if (points[name] === undefined) return undefined;
     pointOf(points[name]).forEach((v, c) => (at[c] += (weight / sum) * v));
   }
-  const offsets: [number | undefined, Point][] = [[place.leftMm, axes.left], [place.upMm, axes.up], [place.forwardMm, axes.forward]];
+  const offsets: [number | undefined, Point][] = [
+    [place.leftMm, axes.left],
+    [place.upMm, axes.up],
+    [place.forwardMm, axes.forward],
+  ];
   for (const [mm, axis] of offsets) axis.forEach((v, c) => (at[c] += (mm ?? 0) * v));
   return at;
 }
 
 /** Where a point of the skin is, near the skin; undefined while that is not known on this side of the wire. */
 export function locate(
-  place: SkinPoint, points: Record<string, Vector3>, given: HeadAxes | undefined, chart?: (xi: number, eta: number) => Point,
+  place: SkinPoint,
+  points: Record<string, Vector3>,
+  given: HeadAxes | undefined,
+  chart?: (xi: number, eta: number) => Point,
 ): Point | undefined {
   switch (place.place.case) {
     case "positionMm":

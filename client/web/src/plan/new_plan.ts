@@ -39,7 +39,13 @@ export function newPlan(): Plan {
 }
 
 export function newFilm(name: string, belowLayer: string, nXi: number, nEta: number): Film {
-  return create(FilmSchema, { name, belowLayer, nXi: Math.floor(nXi / 2), nEta: Math.floor(nEta / 2), restThicknessMm: constant(0.05) });
+  return create(FilmSchema, {
+    name,
+    belowLayer,
+    nXi: Math.floor(nXi / 2),
+    nEta: Math.floor(nEta / 2),
+    restThicknessMm: constant(0.05),
+  });
 }
 
 export function newZone(name: string, region: string): Zone {

@@ -34,7 +34,11 @@ export const region = computed(() => {
   const geometry = plan.value.model?.geometry;
   return geometry?.case === "scanRegion" ? geometry.value : undefined;
 });
-export const zones = computed(() => (plan.value.simulation?.films ?? []).flatMap((film) => film.zones.map((zone) => ({ film, zone }))));
+/** A plan needs a face, unless it is of a plate. */
+export const canRun = computed(() => scan.value !== undefined || plan.value.model?.geometry.case === "square");
+export const zones = computed(() =>
+  (plan.value.simulation?.films ?? []).flatMap((film) => film.zones.map((zone) => ({ film, zone }))),
+);
 
 const specText = computed(() => (plan.value.model ? toJsonString(ModelSpecSchema, plan.value.model) : ""));
 /** Whether the model is the one that the plan describes. */
@@ -55,7 +59,10 @@ export function setModel(built: Model | undefined, meshes: Map<string, Mesh> | u
 }
 
 /** Runs something that may take long or fail; says so on the page. Whether it went well. */
-export async function attempt(label: string, work: (progress: (share: number, label?: string) => void) => Promise<void>): Promise<boolean> {
+export async function attempt(
+  label: string,
+  work: (progress: (share: number, label?: string) => void) => Promise<void>,
+): Promise<boolean> {
   busy.value = { label, share: undefined };
   problem.value = undefined;
   try {
@@ -72,5 +79,6 @@ export async function attempt(label: string, work: (progress: (share: number, la
 /** @param part  of the plan that the daemon was asked about: its violations go beside the fields */
 export function tell(error: unknown): void {
   problem.value = toProblem(error);
-  if (problem.value.unknownCaller) notice.value = token.value ? "The token is not accepted." : "The daemon asks who you are: give a token.";
+  if (problem.value.unknownCaller)
+    notice.value = token.value ? "The token is not accepted." : "The daemon asks who you are: give a token.";
 }

@@ -42,7 +42,8 @@ export function toolHint(now: Tool): string {
   }
 }
 
-export const skinPointAt = (at: Point): SkinPoint => create(SkinPointSchema, { place: { case: "positionMm", value: vectorOf(at) } });
+export const skinPointAt = (at: Point): SkinPoint =>
+  create(SkinPointSchema, { place: { case: "positionMm", value: vectorOf(at) } });
 
 /** Carries out a click at a place on the skin. */
 export function click(at: Point): void {
@@ -91,8 +92,13 @@ export function dab(at: Point): boolean {
   const over = chart.value;
   if (now.kind !== "paint" || over === undefined) return false;
   const shape = plan.value.simulation?.films[now.film]?.zones[now.zone]?.shape;
-  const samples = shape?.case === "painted" && over.fits(shape.value) ? { ...shape.value, values: [...shape.value.values] } : over.empty();
+  const samples =
+    shape?.case === "painted" && over.fits(shape.value)
+      ? { ...shape.value, values: [...shape.value.values] }
+      : over.empty();
   if (!over.brush(samples, at, brushMm.value, now.erase ? 0 : 1)) return false;
-  editPlan(({ simulation }) => (simulation!.films[now.film].zones[now.zone].shape = { case: "painted", value: samples }));
+  editPlan(
+    ({ simulation }) => (simulation!.films[now.film].zones[now.zone].shape = { case: "painted", value: samples }),
+  );
   return true;
 }

@@ -9,7 +9,12 @@ export function toPlanFields(violations: Violation[], part: "model" | "simulatio
 /** What is wrong with a field, or with what is in it. */
 export function descriptionFor(field: string, violations: Violation[]): string {
   return violations
-    .filter((violation) => violation.field === field || violation.field.startsWith(`${field}.`) || violation.field.startsWith(`${field}[`))
-    .map(({ field: inner, description }) => (inner === field ? description : `${inner.slice(field.length).replace(/^\./, "")} ${description}`))
+    .filter(
+      (violation) =>
+        violation.field === field || violation.field.startsWith(`${field}.`) || violation.field.startsWith(`${field}[`),
+    )
+    .map(({ field: inner, description }) =>
+      inner === field ? description : `${inner.slice(field.length).replace(/^\./, "")} ${description}`,
+    )
     .join("; ");
 }

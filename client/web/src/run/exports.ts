@@ -12,10 +12,17 @@ export function save(fileName: string, content: string | Blob): void {
 /** Columns as `series.csv` of `lipofill run` names them. */
 export function seriesCsv(rows: SeriesRow[]): string {
   const columns: [string, (row: SeriesRow) => number | bigint][] = [
-    ["step", (row) => row.step], ["time_s", (row) => row.timeS], ["step_ms", (row) => row.stepMs], ["injected_ml", (row) => row.injectedMl],
-    ["film_volume_ml", (row) => row.filmVolumeMl], ["gap_volume_ml", (row) => row.gapVolumeMl], ["max_pressure_pa", (row) => row.maxPressurePa],
-    ["min_pressure_pa", (row) => row.minPressurePa], ["max_thickness_mm", (row) => row.maxThicknessMm],
-    ["skin_max_displacement_mm", (row) => row.skinMaxDisplacementMm], ["skin_speed_mm_per_s", (row) => row.skinSpeedMmPerS],
+    ["step", (row) => row.step],
+    ["time_s", (row) => row.timeS],
+    ["step_ms", (row) => row.stepMs],
+    ["injected_ml", (row) => row.injectedMl],
+    ["film_volume_ml", (row) => row.filmVolumeMl],
+    ["gap_volume_ml", (row) => row.gapVolumeMl],
+    ["max_pressure_pa", (row) => row.maxPressurePa],
+    ["min_pressure_pa", (row) => row.minPressurePa],
+    ["max_thickness_mm", (row) => row.maxThicknessMm],
+    ["skin_max_displacement_mm", (row) => row.skinMaxDisplacementMm],
+    ["skin_speed_mm_per_s", (row) => row.skinSpeedMmPerS],
   ];
   const lines = rows.map((row) => columns.map(([, read]) => String(read(row))).join(","));
   return `${[columns.map(([name]) => name).join(","), ...lines].join("\n")}\n`;
@@ -24,8 +31,10 @@ export function seriesCsv(rows: SeriesRow[]): string {
 /** The surface as it is now, in millimetres, in the frame of the scan. */
 export function surfaceObj(points: Float32Array, cells: Uint32Array, corners: number): string {
   const lines = ["# Lipofill: simulated skin, millimetres. Research and planning aid, not a medical device."];
-  for (let k = 0; k < points.length; k += 3) lines.push(`v ${points[k].toFixed(4)} ${points[k + 1].toFixed(4)} ${points[k + 2].toFixed(4)}`);
-  for (let k = 0; k < cells.length; k += corners) lines.push(`f ${Array.from(cells.subarray(k, k + corners), (index) => index + 1).join(" ")}`);
+  for (let k = 0; k < points.length; k += 3)
+    lines.push(`v ${points[k].toFixed(4)} ${points[k + 1].toFixed(4)} ${points[k + 2].toFixed(4)}`);
+  for (let k = 0; k < cells.length; k += corners)
+    lines.push(`f ${Array.from(cells.subarray(k, k + corners), (index) => index + 1).join(" ")}`);
   return `${lines.join("\n")}\n`;
 }
 
@@ -34,7 +43,9 @@ export function stateWord(simulation: Simulation | undefined): string {
   if (!simulation || simulation.state === Simulation_State.STATE_UNSPECIFIED) return "";
   const name = Simulation_State[simulation.state] ?? "Unknown";
   const word = name.charAt(0) + name.slice(1).toLowerCase();
-  return simulation.state === Simulation_State.QUEUED && simulation.queuePosition > 0 ? `${word} (${simulation.queuePosition})` : word;
+  return simulation.state === Simulation_State.QUEUED && simulation.queuePosition > 0
+    ? `${word} (${simulation.queuePosition})`
+    : word;
 }
 
 /** Of a state, for the style sheet. */

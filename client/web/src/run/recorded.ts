@@ -20,7 +20,8 @@ function cellsOf(list: ArrayLike<number>): { cells: Uint32Array; corners: number
   const corners = list[0];
   const cells: number[] = [];
   for (let k = 0; k < list.length; k += corners + 1) {
-    if (list[k] !== corners || (corners !== 3 && corners !== 4)) throw new Error("its cells are not all triangles or all quadrilaterals");
+    if (list[k] !== corners || (corners !== 3 && corners !== 4))
+      throw new Error("its cells are not all triangles or all quadrilaterals");
     for (let c = 1; c <= corners; ++c) cells.push(list[k + c]);
   }
   return { cells: Uint32Array.from(cells), corners };
@@ -29,7 +30,15 @@ function cellsOf(list: ArrayLike<number>): { cells: Uint32Array; corners: number
 function floats(name: string, values: ArrayLike<number>, components: number): WireArray {
   const numbers = Float32Array.from(values);
   const shape = components === 1 ? [numbers.length] : [numbers.length / components, components];
-  return { name, unit: "", type: ArrayType.FLOAT32, shape, bytes: new Uint8Array(numbers.buffer), boxMin: [], boxMax: [] };
+  return {
+    name,
+    unit: "",
+    type: ArrayType.FLOAT32,
+    shape,
+    bytes: new Uint8Array(numbers.buffer),
+    boxMin: [],
+    boxMax: [],
+  };
 }
 
 async function readSurface(file: File, name: string): Promise<Surface> {
@@ -46,8 +55,14 @@ async function readSurface(file: File, name: string): Promise<Surface> {
 }
 
 const columns: [keyof SeriesRow & string, string][] = [
-  ["timeS", "time_s"], ["stepMs", "step_ms"], ["injectedMl", "injected_ml"], ["filmVolumeMl", "film_volume_ml"], ["maxPressurePa", "max_pressure_pa"],
-  ["minPressurePa", "min_pressure_pa"], ["maxThicknessMm", "max_thickness_mm"], ["skinMaxDisplacementMm", "skin_max_displacement_mm"],
+  ["timeS", "time_s"],
+  ["stepMs", "step_ms"],
+  ["injectedMl", "injected_ml"],
+  ["filmVolumeMl", "film_volume_ml"],
+  ["maxPressurePa", "max_pressure_pa"],
+  ["minPressurePa", "min_pressure_pa"],
+  ["maxThicknessMm", "max_thickness_mm"],
+  ["skinMaxDisplacementMm", "skin_max_displacement_mm"],
   ["skinSpeedMmPerS", "skin_speed_mm_per_s"],
 ];
 
@@ -72,7 +87,12 @@ function timesOf(pvd: string): Map<string, number> {
 /** The state and its figures as `summary.json` has them; fields the schema does not know are left out. */
 function parseSummary(text: string): ReturnType<typeof create<typeof SimulationSchema>> {
   const document = JSON.parse(text) as Record<string, JsonValue>;
-  const known = { name: "simulations/recorded", state: document["state"], reason: document["reason"] ?? "", summary: document["summary"] ?? document };
+  const known = {
+    name: "simulations/recorded",
+    state: document["state"],
+    reason: document["reason"] ?? "",
+    summary: document["summary"] ?? document,
+  };
   return fromJson(SimulationSchema, known as JsonValue, { ignoreUnknownFields: true });
 }
 
@@ -81,14 +101,22 @@ export async function openFolder(files: File[], progress: (share: number) => voi
   const byName = new Map(files.map((file) => [file.name, file]));
   const mesh = byName.has("scan.pvd") ? "scan" : "skin";
   const collection = byName.get(`${mesh}.pvd`);
-  if (collection === undefined) throw new Error("this folder holds no scan.pvd or skin.pvd: choose one that `lipofill run` has written");
+  if (collection === undefined)
+    throw new Error("this folder holds no scan.pvd or skin.pvd: choose one that `lipofill run` has written");
   const times = [...timesOf(await collection.text())].filter(([file]) => byName.has(file));
   if (times.length === 0) throw new Error(`none of the files that ${collection.name} names is in this folder`);
   close();
   for (const [index, [file, timeS]] of times.entries()) {
     const surface = await readSurface(byName.get(file)!, mesh);
     if (index === 0) meshes.value = new Map([[mesh, surface.mesh]]);
-    const next: Frame = { epoch: 1n, sequence: BigInt(index), timeS, preview: false, end: index === times.length - 1, fields: surface.fields };
+    const next: Frame = {
+      epoch: 1n,
+      sequence: BigInt(index),
+      timeS,
+      preview: false,
+      end: index === times.length - 1,
+      fields: surface.fields,
+    };
     store.add(next);
     progress((index + 1) / times.length);
   }

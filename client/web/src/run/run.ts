@@ -35,9 +35,13 @@ export const state = computed(() => simulation.value?.state ?? Simulation_State.
 const underWay = [Simulation_State.READY, Simulation_State.QUEUED, Simulation_State.RUNNING, Simulation_State.PAUSED];
 export const isUnderWay = computed(() => underWay.includes(state.value));
 /** It takes the commands of one that runs. */
-export const isRunning = computed(() => state.value === Simulation_State.RUNNING || state.value === Simulation_State.QUEUED);
+export const isRunning = computed(
+  () => state.value === Simulation_State.RUNNING || state.value === Simulation_State.QUEUED,
+);
 export const hasFrame = computed(() => frame.value !== undefined);
-export const hasResult = computed(() => hasFrame.value && (recorded.value !== "" || (simulation.value?.summary?.steps ?? 0n) > 0n));
+export const hasResult = computed(
+  () => hasFrame.value && (recorded.value !== "" || (simulation.value?.summary?.steps ?? 0n) > 0n),
+);
 
 let leave = new AbortController();
 const pollMs = 400;
@@ -78,7 +82,13 @@ export function close(): void {
   leave = new AbortController();
   store.clear();
   batch(() => {
-    [simulation.value, frame.value, meshes.value, lookedAt.value, recorded.value] = [undefined, undefined, undefined, undefined, ""];
+    [simulation.value, frame.value, meshes.value, lookedAt.value, recorded.value] = [
+      undefined,
+      undefined,
+      undefined,
+      undefined,
+      "",
+    ];
     [timeShown.value, runAxes.value] = [undefined, undefined];
     [rows.value, skipped.value, connection.value] = [[], 0, "idle"];
   });
@@ -93,7 +103,8 @@ async function follow(name: string, face: string): Promise<void> {
     await watch({ simulation: name, fields, maxRateHz: 60, signal: left }, listener);
     if (!left.aborted) connection.value = "idle";
   } catch (error) {
-    const wrongField = ConnectError.from(error).code === Code.InvalidArgument || ConnectError.from(error).code === Code.NotFound;
+    const wrongField =
+      ConnectError.from(error).code === Code.InvalidArgument || ConnectError.from(error).code === Code.NotFound;
     if (wrongField && face === "scan" && meshes.value === undefined) return follow(name, "skin");
     if (!left.aborted) tell(error);
   }
@@ -139,8 +150,11 @@ export function open(next: Simulation, face = "scan"): void {
 export async function openExisting(next: Simulation): Promise<void> {
   open(next);
   try {
-    const { spec } = await patients.getModel({ name: (await simulations.getSimulation({ name: next.name })).spec?.model ?? "" });
-    if (spec?.geometry.case === "scanRegion") runAxes.value = axesOf(spec.geometry.value.landmarksMm, spec.geometry.value.axes);
+    const { spec } = await patients.getModel({
+      name: (await simulations.getSimulation({ name: next.name })).spec?.model ?? "",
+    });
+    if (spec?.geometry.case === "scanRegion")
+      runAxes.value = axesOf(spec.geometry.value.landmarksMm, spec.geometry.value.axes);
   } catch {
     // Its model may be gone; its results are not.
   }
@@ -152,9 +166,15 @@ const planFace = (): string => (plan.value.model?.geometry.case === "scanRegion"
 export async function create(start: boolean): Promise<boolean> {
   violations.value = [];
   return attempt("Setting up the simulation", async () => {
-    const displayName = plan.value.name.toLowerCase().replace(/[^a-z0-9]+/g, "-").slice(0, 63);
+    const displayName = plan.value.name
+      .toLowerCase()
+      .replace(/[^a-z0-9]+/g, "-")
+      .slice(0, 63);
     try {
-      open(await simulations.createSimulation({ requestId: newId(), displayName, spec: simulationSpec(), start }), planFace());
+      open(
+        await simulations.createSimulation({ requestId: newId(), displayName, spec: simulationSpec(), start }),
+        planFace(),
+      );
     } catch (error) {
       violations.value = toPlanFields(toProblem(error).violations, "simulation");
       throw error;

@@ -21,7 +21,8 @@ export class FrameReader {
     const get = (field: "displacement" | "pressure" | "thickness", components: number): Float32Array => {
       const array = frame.fields.get(`${mesh}.${field}`);
       const values = array === undefined ? new Float32Array(count * components) : toNumbers(array, this.kept[field]);
-      if (values.length !== count * components) throw new Error(`${mesh}.${field} has ${values.length} values for ${count} vertices`);
+      if (values.length !== count * components)
+        throw new Error(`${mesh}.${field} has ${values.length} values for ${count} vertices`);
       return (this.kept[field] = values);
     };
     const displacement = get("displacement", 3);
@@ -48,25 +49,39 @@ const fade: Record<Quantity, number> = { displacement: 0.15, pressure: 0.1, thic
 /** Where there is fat at all: pressure of a dry plane is none of the patient's. */
 const leastFat = 0.12;
 
-export function valuesOf(quantity: Quantity, numbers: FaceNumbers, distance: Float32Array | undefined): Float32Array | undefined {
+export function valuesOf(
+  quantity: Quantity,
+  numbers: FaceNumbers,
+  distance: Float32Array | undefined,
+): Float32Array | undefined {
   return quantity === "distance" ? distance : quantity === "displacement" ? numbers.moved : numbers[quantity];
 }
 
 export function colourFace(
-  surface: Surface, quantity: Quantity | "none", numbers: FaceNumbers, distance: Float32Array | undefined, map: ColourMap,
+  surface: Surface,
+  quantity: Quantity | "none",
+  numbers: FaceNumbers,
+  distance: Float32Array | undefined,
+  map: ColourMap,
 ): void {
   const values = quantity === "none" ? undefined : valuesOf(quantity, numbers, distance);
   const { colours } = surface;
   for (let k = 0, at = 0; k < surface.count; ++k, at += 3) {
     const value = values === undefined ? NaN : values[k];
     const dry = quantity === "pressure" && numbers.thickness[k] < leastFat;
-    const share = Number.isNaN(value) || dry ? 0 : quantity === "distance" || fade[quantity as Quantity] === 0 ? 1 : Math.min(1, Math.abs(value) / fade[quantity as Quantity]);
+    const share =
+      Number.isNaN(value) || dry
+        ? 0
+        : quantity === "distance" || fade[quantity as Quantity] === 0
+          ? 1
+          : Math.min(1, Math.abs(value) / fade[quantity as Quantity]);
     if (share === 0) {
       colours.set(skinColour, at);
       continue;
     }
     paint(map, value, colours, at);
-    if (share < 1) for (let c = 0; c < 3; ++c) colours[at + c] = skinColour[c] + share * (colours[at + c] - skinColour[c]);
+    if (share < 1)
+      for (let c = 0; c < 3; ++c) colours[at + c] = skinColour[c] + share * (colours[at + c] - skinColour[c]);
   }
   surface.recolour();
 }

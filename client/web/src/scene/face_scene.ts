@@ -125,7 +125,8 @@ export class FaceScene {
       this.numbers = this.reader.read(frame, this.faceMesh.name, this.face.count);
       this.face.move(this.numbers.displacement);
       const values = quantity === "none" ? undefined : valuesOf(quantity, this.numbers, this.distance);
-      if (quantity !== "none" && this.running.fit(quantity, values === undefined ? 1 : largestOf(values))) this.onMap(this.running.map);
+      if (quantity !== "none" && this.running.fit(quantity, values === undefined ? 1 : largestOf(values)))
+        this.onMap(this.running.map);
       colourFace(this.face, values === undefined ? "none" : quantity, this.numbers, this.distance, this.running.map);
     }
     this.viewport.request();
@@ -158,7 +159,10 @@ export class FaceScene {
     const at = (values: Float32Array): number => valueAt(values, this.face!.triangles, hit);
     const distance = this.distance === undefined ? NaN : at(this.distance);
     return {
-      point: hit.point, displacementMm: at(this.numbers.moved), pressureMmHg: at(this.numbers.pressure), thicknessMm: at(this.numbers.thickness),
+      point: hit.point,
+      displacementMm: at(this.numbers.moved),
+      pressureMmHg: at(this.numbers.pressure),
+      thicknessMm: at(this.numbers.thickness),
       distanceMm: Number.isNaN(distance) ? undefined : distance,
     };
   }

@@ -4,9 +4,22 @@ import type { Rgb } from "./colour_maps";
 import { Surface } from "./surface";
 
 /** Corner numbers of a hexahedron's six faces, deep face first. */
-const faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+const faces = [
+  [0, 3, 2, 1],
+  [4, 5, 6, 7],
+  [0, 1, 5, 4],
+  [1, 2, 6, 5],
+  [2, 3, 7, 6],
+  [3, 0, 4, 7],
+];
 
-export const layerColours: Rgb[] = [[224, 176, 150], [240, 214, 120], [196, 150, 170], [170, 70, 66], [120, 110, 150]];
+export const layerColours: Rgb[] = [
+  [224, 176, 150],
+  [240, 214, 120],
+  [196, 150, 170],
+  [170, 70, 66],
+  [120, 110, 150],
+];
 
 /** Faces that only one of the hexahedra has, as quadrilaterals. */
 export function outerFaces(cells: Uint32Array): Uint32Array {

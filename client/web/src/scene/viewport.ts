@@ -51,7 +51,12 @@ export class Viewport {
     this.renderWindow.addRenderer(this.renderer);
     this.renderWindow.addView(this.gl);
     const canvas = this.gl.getCanvas() as HTMLCanvasElement;
-    canvas.getContext("webgl2", { antialias: hasGraphicsCard(), depth: true, alpha: true, powerPreference: "high-performance" });
+    canvas.getContext("webgl2", {
+      antialias: hasGraphicsCard(),
+      depth: true,
+      alpha: true,
+      powerPreference: "high-performance",
+    });
     this.gl.setContainer(container);
     this.interactor.setView(this.gl);
     this.interactor.initialize();
@@ -108,7 +113,11 @@ export class Viewport {
 
   get pose(): CameraPose {
     const camera = this.renderer.getActiveCamera();
-    return { position: [...camera.getPosition()] as Point, focus: [...camera.getFocalPoint()] as Point, up: [...camera.getViewUp()] as Point };
+    return {
+      position: [...camera.getPosition()] as Point,
+      focus: [...camera.getFocalPoint()] as Point,
+      up: [...camera.getViewUp()] as Point,
+    };
   }
 
   /** As another viewport is turned. */
@@ -155,7 +164,11 @@ export class Viewport {
     this.render();
     // Before the browser takes what was drawn.
     return new Promise((resolve, reject) =>
-      this.canvas().toBlob((blob) => (blob ? resolve(blob) : reject(new Error("the picture cannot be taken"))), "image/png"));
+      this.canvas().toBlob(
+        (blob) => (blob ? resolve(blob) : reject(new Error("the picture cannot be taken"))),
+        "image/png",
+      ),
+    );
   }
 
   canvas(): HTMLCanvasElement {

@@ -35,14 +35,16 @@ function boxOf(points: Float32Array): { centre: Point; half: Point } {
 export function faceView(face: Mesh, axes: Axes, turn: "front" | "left" | "right"): View {
   const { centre, half } = boxOf(face.points);
   const sign = turn === "left" ? 1 : turn === "right" ? -1 : 0;
-  const direction = turn === "front" ? axes.forward : unit(axes.forward.map((v, c) => 0.75 * v + 0.66 * sign * axes.left[c]) as Point);
+  const direction =
+    turn === "front" ? axes.forward : unit(axes.forward.map((v, c) => 0.75 * v + 0.66 * sign * axes.left[c]) as Point);
   return { focus: centre, direction, up: axes.up, halfHeight: 1.12 * Math.max(...half) };
 }
 
 /** The region of the model, from in front of it, with what a face is recognised by around it. */
 export function regionView(skin: Mesh, axes: Axes, flat: boolean): View {
   const { centre, half } = boxOf(skin.points);
-  if (flat) return { focus: centre, direction: unit([0.2, -0.75, 0.65]), up: [0, 0, 1], halfHeight: 1.05 * Math.max(...half) };
+  if (flat)
+    return { focus: centre, direction: unit([0.2, -0.75, 0.65]), up: [0, 0, 1], halfHeight: 1.05 * Math.max(...half) };
   const normals = new Float32Array(skin.points.length);
   computeNormals(skin.points, trianglesOf(skin), normals);
   const mean: Point = [0, 0, 0];

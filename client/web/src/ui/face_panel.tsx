@@ -8,10 +8,10 @@ import { landmarkHints, landmarkNames, readable } from "../plan/anatomy";
 import { openSample, pickScan, uploadFace, useLandmarks, usePlan } from "../plan/actions";
 import { writeLandmarks } from "../plan/landmarks";
 import { parsePlan } from "../plan/plan_file";
-import { editPlan, patient, region, scan, tell } from "../plan/state";
+import { editPlan, patient, plan, region, scan, tell } from "../plan/state";
 import { tool } from "../plan/tools";
 import { save } from "../run/exports";
-import { FileButton, Section, SelectField } from "./fields";
+import { FileButton, Section, SelectField, TextField } from "./fields";
 
 const known = signal<Patient[]>([]);
 const scansOf = signal<Scan[]>([]);
@@ -28,7 +28,10 @@ async function loadPatients(): Promise<void> {
 async function choosePatient(name: string): Promise<void> {
   patient.value = name;
   try {
-    scansOf.value = name === "" ? [] : (await calls.listScans({ parent: name, pageSize: 1000 })).scans.filter(({ complete }) => complete);
+    scansOf.value =
+      name === ""
+        ? []
+        : (await calls.listScans({ parent: name, pageSize: 1000 })).scans.filter(({ complete }) => complete);
   } catch (error) {
     tell(error);
   }
@@ -41,21 +44,59 @@ function Source() {
   return (
     <Section title="Face">
       <div class="row">
-        <FileButton label="Upload scan…" accept=".obj,.ply,.stl" onFiles={async ([file]) => void uploadFace(file.name, await file.arrayBuffer(), unit.value)} />
-        <button type="button" class="button" onClick={() => void openSample()}>Synthetic sample</button>
+        <FileButton
+          label="Upload scan…"
+          accept=".obj,.ply,.stl"
+          onFiles={async ([file]) => void uploadFace(file.name, await file.arrayBuffer(), unit.value)}
+        />
+        <button type="button" class="button" onClick={() => void openSample()}>
+          Synthetic sample
+        </button>
       </div>
-      <SelectField label="Unit of the file" value={unit.value} onChange={(value) => (unit.value = Number(value))}
-        options={[{ value: ScanUnit.MILLIMETRE, label: "Millimetres" }, { value: ScanUnit.CENTIMETRE, label: "Centimetres" }, { value: ScanUnit.METRE, label: "Metres" }]} />
-      <SelectField label="Patient" value={patient.value} onChange={(value) => void choosePatient(value)}
-        options={[{ value: "", label: "New patient" }, ...known.value.map(({ name, displayName }) => ({ value: name, label: displayName || shortName(name) }))]} />
+      <SelectField
+        label="Unit of the file"
+        value={unit.value}
+        onChange={(value) => (unit.value = Number(value))}
+        options={[
+          { value: ScanUnit.MILLIMETRE, label: "Millimetres" },
+          { value: ScanUnit.CENTIMETRE, label: "Centimetres" },
+          { value: ScanUnit.METRE, label: "Metres" },
+        ]}
+      />
+      <SelectField
+        label="Patient"
+        value={patient.value}
+        onChange={(value) => void choosePatient(value)}
+        options={[
+          { value: "", label: "New patient" },
+          ...known.value.map(({ name, displayName }) => ({ value: name, label: displayName || shortName(name) })),
+        ]}
+      />
       {scansOf.value.length > 0 && (
-        <SelectField label="Scan" value={scan.value?.name ?? ""} onChange={(value) => {
-          const next = scansOf.value.find(({ name }) => name === value);
-          if (next) void pickScan(next);
-        }} options={[{ value: "", label: "Choose…" }, ...scansOf.value.map(({ name, report }) => ({ value: name, label: `${shortName(name)} (${report?.vertices ?? 0} vertices)` }))]} />
+        <SelectField
+          label="Scan"
+          value={scan.value?.name ?? ""}
+          onChange={(value) => {
+            const next = scansOf.value.find(({ name }) => name === value);
+            if (next) void pickScan(next);
+          }}
+          options={[
+            { value: "", label: "Choose…" },
+            ...scansOf.value.map(({ name, report }) => ({
+              value: name,
+              label: `${shortName(name)} (${report?.vertices ?? 0} vertices)`,
+            })),
+          ]}
+        />
       )}
       {scan.value?.report && (
-        <p class="quiet">{scan.value.report.vertices.toLocaleString("en")} vertices, {[scan.value.report.sizeXMm, scan.value.report.sizeYMm, scan.value.report.sizeZMm].map((v) => v.toFixed(0)).join(" × ")} mm</p>
+        <p class="quiet">
+          {scan.value.report.vertices.toLocaleString("en")} vertices,{" "}
+          {[scan.value.report.sizeXMm, scan.value.report.sizeYMm, scan.value.report.sizeZMm]
+            .map((v) => v.toFixed(0))
+            .join(" × ")}{" "}
+          mm
+        </p>
       )}
     </Section>
   );
@@ -68,26 +109,51 @@ function Landmarks() {
   return (
     <Section title="Landmarks" aside={<span class="quiet">{Object.keys(points).length} set</span>}>
       <div class="row">
-        <FileButton label="From file…" accept=".json" onFiles={async ([file]) => {
-          try {
-            useLandmarks(await file.text());
-          } catch (error) {
-            tell(error);
-          }
-        }} />
-        <button type="button" class="button" disabled={Object.keys(points).length === 0} onClick={() => save("landmarks.json", writeLandmarks(points, region.value?.axes))}>Save</button>
+        <FileButton
+          label="From file…"
+          accept=".json"
+          onFiles={async ([file]) => {
+            try {
+              useLandmarks(await file.text());
+            } catch (error) {
+              tell(error);
+            }
+          }}
+        />
+        <button
+          type="button"
+          class="button"
+          disabled={Object.keys(points).length === 0}
+          onClick={() => save("landmarks.json", writeLandmarks(points, region.value?.axes))}
+        >
+          Save
+        </button>
       </div>
       <ul class="landmarks">
         {names.map((name) => (
           <li key={name} class={points[name] ? "set" : ""}>
-            <button type="button" aria-pressed={placing === name} title={landmarkHints[name.replace(/_(left|right)$/, "")] ?? ""}
-              onClick={() => (tool.value = placing === name ? { kind: "turn" } : { kind: "landmark", name })}>
-              <span class="dot" aria-hidden="true" />{readable(name)}
+            <button
+              type="button"
+              aria-pressed={placing === name}
+              title={landmarkHints[name.replace(/_(left|right)$/, "")] ?? ""}
+              onClick={() => (tool.value = placing === name ? { kind: "turn" } : { kind: "landmark", name })}
+            >
+              <span class="dot" aria-hidden="true" />
+              {readable(name)}
             </button>
             {points[name] && (
-              <button type="button" class="icon" aria-label={`Remove ${readable(name)}`} onClick={() => editPlan(({ model }) => {
-                if (model?.geometry.case === "scanRegion") delete model.geometry.value.landmarksMm[name];
-              })}>×</button>
+              <button
+                type="button"
+                class="icon"
+                aria-label={`Remove ${readable(name)}`}
+                onClick={() =>
+                  editPlan(({ model }) => {
+                    if (model?.geometry.case === "scanRegion") delete model.geometry.value.landmarksMm[name];
+                  })
+                }
+              >
+                ×
+              </button>
             )}
           </li>
         ))}
@@ -101,13 +167,22 @@ export function FacePanel() {
     <>
       <Source />
       <Section title="Plan">
-        <FileButton label="Open plan…" accept=".json" onFiles={async ([file]) => {
-          try {
-            usePlan(parsePlan(await file.text()));
-          } catch (error) {
-            tell(error);
-          }
-        }} />
+        <TextField
+          label="Name"
+          value={plan.value.name}
+          onChange={(name) => name !== "" && editPlan((next) => (next.name = name))}
+        />
+        <FileButton
+          label="Open plan…"
+          accept=".json"
+          onFiles={async ([file]) => {
+            try {
+              usePlan(parsePlan(await file.text()));
+            } catch (error) {
+              tell(error);
+            }
+          }}
+        />
       </Section>
       {scan.value && <Landmarks />}
     </>

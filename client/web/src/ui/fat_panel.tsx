@@ -18,11 +18,29 @@ function Planes() {
         zonesBefore += film.zones.length;
         return <FilmEditor key={film.name} film={index} of={film} zonesBefore={before} />;
       })}
-      <button type="button" class="link" onClick={() => editPlan(({ model, simulation }) => {
-        const used = simulation!.films.map(({ belowLayer }) => belowLayer);
-        const layer = model!.layers.find(({ name }) => !used.includes(name))?.name ?? model!.layers[0]?.name ?? "";
-        simulation!.films.push(newFilm(freeName("plane", simulation!.films.map(({ name }) => name)), layer, model!.nXi ?? 40, model!.nEta ?? 32));
-      })}>Add a plane</button>
+      <button
+        type="button"
+        class="link"
+        onClick={() =>
+          editPlan(({ model, simulation }) => {
+            const used = simulation!.films.map(({ belowLayer }) => belowLayer);
+            const layer = model!.layers.find(({ name }) => !used.includes(name))?.name ?? model!.layers[0]?.name ?? "";
+            simulation!.films.push(
+              newFilm(
+                freeName(
+                  "plane",
+                  simulation!.films.map(({ name }) => name),
+                ),
+                layer,
+                model!.nXi ?? 40,
+                model!.nEta ?? 32,
+              ),
+            );
+          })
+        }
+      >
+        Add a plane
+      </button>
     </Section>
   );
 }
@@ -39,26 +57,69 @@ function Injections() {
         return (
           <fieldset class="injection" key={index}>
             <legend>Injection {index + 1}</legend>
-            <SelectField label="Into" value={injection.zone} field={`${at}.zone`} options={names.map((name) => ({ value: name, label: readable(name) }))}
-              onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].zone = value))} />
+            <SelectField
+              label="Into"
+              value={injection.zone}
+              field={`${at}.zone`}
+              options={names.map((name) => ({ value: name, label: readable(name) }))}
+              onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].zone = value))}
+            />
             <div class="pair">
-              <NumberField label="Volume" unit="mL" step={0.1} value={injection.volumeMl} field={`${at}.volume_ml`}
-                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].volumeMl = value))} />
-              <NumberField label="Rate" unit="mL/s" step={0.1} value={injection.rateMlPerS} field={`${at}.rate_ml_per_s`}
-                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].rateMlPerS = value))} />
+              <NumberField
+                label="Volume"
+                unit="mL"
+                step={0.1}
+                value={injection.volumeMl}
+                field={`${at}.volume_ml`}
+                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].volumeMl = value))}
+              />
+              <NumberField
+                label="Rate"
+                unit="mL/s"
+                step={0.1}
+                value={injection.rateMlPerS}
+                field={`${at}.rate_ml_per_s`}
+                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].rateMlPerS = value))}
+              />
             </div>
             <div class="row">
-              <button type="button" class="button small" aria-pressed={placing} onClick={() => (tool.value = placing ? { kind: "turn" } : { kind: "site", index })}>
+              <button
+                type="button"
+                class="button small"
+                aria-pressed={placing}
+                onClick={() => (tool.value = placing ? { kind: "turn" } : { kind: "site", index })}
+              >
                 {injection.site ? "Move the point" : "Place the point"}
               </button>
-              {injection.site && <button type="button" class="link" onClick={() => editPlan(({ simulation }) => (simulation!.injections[index].site = undefined))}>Evenly over the zone</button>}
-              <button type="button" class="link" onClick={() => editPlan(({ simulation }) => void simulation!.injections.splice(index, 1))}>Remove</button>
+              {injection.site && (
+                <button
+                  type="button"
+                  class="link"
+                  onClick={() => editPlan(({ simulation }) => (simulation!.injections[index].site = undefined))}
+                >
+                  Evenly over the zone
+                </button>
+              )}
+              <button
+                type="button"
+                class="link"
+                onClick={() => editPlan(({ simulation }) => void simulation!.injections.splice(index, 1))}
+              >
+                Remove
+              </button>
             </div>
             <Complaint field={`${at}.site`} />
           </fieldset>
         );
       })}
-      <button type="button" class="button wide" disabled={names.length === 0} onClick={() => editPlan(({ simulation }) => void simulation!.injections.push(newInjection(names[0])))}>Add an injection</button>
+      <button
+        type="button"
+        class="button wide"
+        disabled={names.length === 0}
+        onClick={() => editPlan(({ simulation }) => void simulation!.injections.push(newInjection(names[0])))}
+      >
+        Add an injection
+      </button>
       {names.length === 0 && <p class="hint">Add a zone first.</p>}
     </Section>
   );
@@ -69,11 +130,31 @@ function Fat() {
   const preset = fat?.preset ?? FatPreset.FAT_PRESET_UNSPECIFIED;
   return (
     <Section title="Fat">
-      <SelectField label="Preparation" value={preset === 0 ? FatPreset.NEWTONIAN : preset} field="simulation.fat" onChange={(value) => editPlan(({ simulation }) => (simulation!.fat = create(FatSchema, { preset: Number(value) })))}
-        options={[{ value: FatPreset.NEWTONIAN, label: "Newtonian (the paper's)" }, { value: FatPreset.COLEMAN, label: "Coleman" }, { value: FatPreset.NANOFAT, label: "Nanofat" }, { value: FatPreset.SVF_GEL, label: "SVF gel" }]} />
+      <SelectField
+        label="Preparation"
+        value={preset === 0 ? FatPreset.NEWTONIAN : preset}
+        field="simulation.fat"
+        onChange={(value) =>
+          editPlan(({ simulation }) => (simulation!.fat = create(FatSchema, { preset: Number(value) })))
+        }
+        options={[
+          { value: FatPreset.NEWTONIAN, label: "Newtonian (the paper's)" },
+          { value: FatPreset.COLEMAN, label: "Coleman" },
+          { value: FatPreset.NANOFAT, label: "Nanofat" },
+          { value: FatPreset.SVF_GEL, label: "SVF gel" },
+        ]}
+      />
       {preset <= FatPreset.NEWTONIAN && (
-        <NumberField label="Viscosity" unit="Pa s" value={fat?.viscosityPaS} placeholder="15" field="simulation.fat.viscosity_pa_s"
-          onChange={(value) => editPlan(({ simulation }) => ((simulation!.fat ??= create(FatSchema)).viscosityPaS = value))} />
+        <NumberField
+          label="Viscosity"
+          unit="Pa s"
+          value={fat?.viscosityPaS}
+          placeholder="15"
+          field="simulation.fat.viscosity_pa_s"
+          onChange={(value) =>
+            editPlan(({ simulation }) => ((simulation!.fat ??= create(FatSchema)).viscosityPaS = value))
+          }
+        />
       )}
     </Section>
   );
@@ -84,9 +165,21 @@ function Ligaments() {
   const sides = ["left", "right"].filter((side) => region.value?.landmarksMm[`gonion_${side}`]);
   const named = sides.flatMap((side) => ligamentNames.map((name) => `${name}_${side}`));
   const add = (choice: string): void => {
-    const name = freeName(choice === "points" ? "ligament" : choice, ligaments.map((ligament) => ligament.name));
-    editPlan(({ simulation }) => void simulation!.ligaments.push(create(LigamentSchema, choice === "points"
-      ? { name, stiffnessNPerMm: 0.2, slackMm: 0.5 } : { name, place: { case: "anatomical", value: choice }, slackMm: 0.5 })));
+    const name = freeName(
+      choice === "points" ? "ligament" : choice,
+      ligaments.map((ligament) => ligament.name),
+    );
+    editPlan(
+      ({ simulation }) =>
+        void simulation!.ligaments.push(
+          create(
+            LigamentSchema,
+            choice === "points"
+              ? { name, stiffnessNPerMm: 0.2, slackMm: 0.5 }
+              : { name, place: { case: "anatomical", value: choice }, slackMm: 0.5 },
+          ),
+        ),
+    );
     if (choice === "points") tool.value = { kind: "ligament", index: plan.value.simulation!.ligaments.length - 1 };
   };
   return (
@@ -96,16 +189,49 @@ function Ligaments() {
           const placing = tool.value.kind === "ligament" && tool.value.index === index;
           return (
             <li class="item" key={ligament.name}>
-              <span class="grow"><b>{readable(ligament.name)}</b> <span class="quiet">{ligament.place.case === "points" ? `${ligament.place.value.points.length} points` : ligament.place.case === "anatomical" ? "by landmarks" : "not placed"}</span></span>
-              {ligament.place.case !== "anatomical" && <button type="button" class="button small" aria-pressed={placing} onClick={() => (tool.value = placing ? { kind: "turn" } : { kind: "ligament", index })}>{placing ? "Done" : "Place"}</button>}
-              <button type="button" class="icon" aria-label={`Remove ${readable(ligament.name)}`} onClick={() => editPlan(({ simulation }) => void simulation!.ligaments.splice(index, 1))}>×</button>
+              <span class="grow">
+                <b>{readable(ligament.name)}</b>{" "}
+                <span class="quiet">
+                  {ligament.place.case === "points"
+                    ? `${ligament.place.value.points.length} points`
+                    : ligament.place.case === "anatomical"
+                      ? "by landmarks"
+                      : "not placed"}
+                </span>
+              </span>
+              {ligament.place.case !== "anatomical" && (
+                <button
+                  type="button"
+                  class="button small"
+                  aria-pressed={placing}
+                  onClick={() => (tool.value = placing ? { kind: "turn" } : { kind: "ligament", index })}
+                >
+                  {placing ? "Done" : "Place"}
+                </button>
+              )}
+              <button
+                type="button"
+                class="icon"
+                aria-label={`Remove ${readable(ligament.name)}`}
+                onClick={() => editPlan(({ simulation }) => void simulation!.ligaments.splice(index, 1))}
+              >
+                ×
+              </button>
               <Complaint field={`simulation.ligaments[${index}]`} />
             </li>
           );
         })}
       </ul>
-      <SelectField label="Add a ligament" value="" onChange={(value) => value !== "" && add(value)}
-        options={[{ value: "", label: "Choose…" }, { value: "points", label: "Placed by hand" }, ...named.map((name) => ({ value: name, label: readable(name) }))]} />
+      <SelectField
+        label="Add a ligament"
+        value=""
+        onChange={(value) => value !== "" && add(value)}
+        options={[
+          { value: "", label: "Choose…" },
+          { value: "points", label: "Placed by hand" },
+          ...named.map((name) => ({ value: name, label: readable(name) })),
+        ]}
+      />
     </Section>
   );
 }
@@ -115,13 +241,40 @@ function Time() {
   const settled = time?.goal === TimeControl_Goal.SETTLED_SHAPE;
   return (
     <Section title="Time">
-      <CheckField label="Watch in real time" value={pace === Pace.REAL_TIME} onChange={(value) => editPlan(({ simulation }) => (simulation!.pace = value ? Pace.REAL_TIME : Pace.AS_FAST_AS_POSSIBLE))} />
-      <CheckField label="Only the settled shape" value={settled} onChange={(value) => editPlan(({ simulation }) => {
-        simulation!.time = value ? create(TimeControlSchema, { goal: TimeControl_Goal.SETTLED_SHAPE, endS: 600 }) : create(TimeControlSchema, { stepMs: 10, maxStepMs: 2000, endS: 120, settleSkinSpeedMmPerS: 0.01 });
-      })} />
-      <CheckField label="Preview first" value={preview ?? false} onChange={(value) => editPlan(({ simulation }) => (simulation!.preview = value))} />
-      <NumberField label="Ends at the latest after" unit="s" min={0} value={time?.endS} placeholder="60" field="simulation.time.end_s"
-        onChange={(value) => editPlan(({ simulation }) => ((simulation!.time ??= create(TimeControlSchema)).endS = value))} />
+      <CheckField
+        label="Watch in real time"
+        value={pace === Pace.REAL_TIME}
+        onChange={(value) =>
+          editPlan(({ simulation }) => (simulation!.pace = value ? Pace.REAL_TIME : Pace.AS_FAST_AS_POSSIBLE))
+        }
+      />
+      <CheckField
+        label="Only the settled shape"
+        value={settled}
+        onChange={(value) =>
+          editPlan(({ simulation }) => {
+            simulation!.time = value
+              ? create(TimeControlSchema, { goal: TimeControl_Goal.SETTLED_SHAPE, endS: 600 })
+              : create(TimeControlSchema, { stepMs: 10, maxStepMs: 2000, endS: 120, settleSkinSpeedMmPerS: 0.01 });
+          })
+        }
+      />
+      <CheckField
+        label="Preview first"
+        value={preview ?? false}
+        onChange={(value) => editPlan(({ simulation }) => (simulation!.preview = value))}
+      />
+      <NumberField
+        label="Ends at the latest after"
+        unit="s"
+        min={0}
+        value={time?.endS}
+        placeholder="60"
+        field="simulation.time.end_s"
+        onChange={(value) =>
+          editPlan(({ simulation }) => ((simulation!.time ??= create(TimeControlSchema)).endS = value))
+        }
+      />
       <Complaint field="simulation.time" />
     </Section>
   );

@@ -6,7 +6,11 @@ import { descriptionFor } from "../plan/violations";
 
 export function Complaint({ field, id }: { field?: string; id?: string }) {
   const text = field === undefined ? "" : descriptionFor(field, violations.value);
-  return text === "" ? null : <p class="complaint" id={id} role="alert">{text}</p>;
+  return text === "" ? null : (
+    <p class="complaint" id={id} role="alert">
+      {text}
+    </p>
+  );
 }
 
 interface NumberProps {
@@ -31,16 +35,52 @@ export function NumberField({ label, unit, value, field, step, min, max, placeho
     <div class="field">
       <label for={id}>{label}</label>
       <span class="with-unit">
-        <input id={id} type="number" value={typed ?? value ?? ""} step={step ?? "any"} min={min} max={max} placeholder={placeholder}
-          aria-invalid={wrong} aria-describedby={wrong ? `${id}-complaint` : undefined}
+        <input
+          id={id}
+          type="number"
+          value={typed ?? value ?? ""}
+          step={step ?? "any"}
+          min={min}
+          max={max}
+          placeholder={placeholder}
+          aria-invalid={wrong}
+          aria-describedby={wrong ? `${id}-complaint` : undefined}
           onInput={(event) => setTyped(event.currentTarget.value)}
           onChange={(event) => {
             setTyped(undefined);
             onChange(event.currentTarget.value === "" ? undefined : Number(event.currentTarget.value));
-          }} />
+          }}
+        />
         {unit && <span class="unit">{unit}</span>}
       </span>
       <Complaint field={field} id={`${id}-complaint`} />
+    </div>
+  );
+}
+
+export function TextField({
+  label,
+  value,
+  field,
+  onChange,
+}: {
+  label: string;
+  value: string;
+  field?: string;
+  onChange: (value: string) => void;
+}) {
+  const id = useId();
+  return (
+    <div class="field">
+      <label for={id}>{label}</label>
+      <input
+        id={id}
+        type="text"
+        value={value}
+        maxLength={63}
+        onChange={(event) => onChange(event.currentTarget.value.trim())}
+      />
+      <Complaint field={field} />
     </div>
   );
 }
@@ -59,14 +99,26 @@ export function SelectField({ label, value, options, field, onChange }: SelectPr
     <div class="field">
       <label for={id}>{label}</label>
       <select id={id} value={value} onChange={(event) => onChange(event.currentTarget.value)}>
-        {options.map((option) => <option value={option.value} key={option.value}>{option.label}</option>)}
+        {options.map((option) => (
+          <option value={option.value} key={option.value}>
+            {option.label}
+          </option>
+        ))}
       </select>
       <Complaint field={field} />
     </div>
   );
 }
 
-export function CheckField({ label, value, onChange }: { label: string; value: boolean; onChange: (value: boolean) => void }) {
+export function CheckField({
+  label,
+  value,
+  onChange,
+}: {
+  label: string;
+  value: boolean;
+  onChange: (value: boolean) => void;
+}) {
   return (
     <label class="check">
       <input type="checkbox" checked={value} onChange={(event) => onChange(event.currentTarget.checked)} />
@@ -75,38 +127,79 @@ export function CheckField({ label, value, onChange }: { label: string; value: b
   );
 }
 
-export function FileButton({ label, accept, folder, onFiles }: {
-  label: string; accept?: string; folder?: boolean; onFiles: (files: File[]) => void;
+export function FileButton({
+  label,
+  accept,
+  folder,
+  onFiles,
+}: {
+  label: string;
+  accept?: string;
+  folder?: boolean;
+  onFiles: (files: File[]) => void;
 }) {
   return (
     <label class="button">
       {label}
-      <input type="file" class="hidden-input" accept={accept} aria-label={label} {...(folder ? { webkitdirectory: true } : {})}
+      <input
+        type="file"
+        class="hidden-input"
+        accept={accept}
+        aria-label={label}
+        {...(folder ? { webkitdirectory: true } : {})}
         onChange={(event) => {
           const files = Array.from(event.currentTarget.files ?? []);
           event.currentTarget.value = "";
           if (files.length > 0) onFiles(files);
-        }} />
+        }}
+      />
     </label>
   );
 }
 
-export function Section({ title, children, aside }: { title: string; children: ComponentChildren; aside?: ComponentChildren }) {
+export function Section({
+  title,
+  children,
+  aside,
+}: {
+  title: string;
+  children: ComponentChildren;
+  aside?: ComponentChildren;
+}) {
   return (
     <section class="section">
-      <header><h3>{title}</h3>{aside}</header>
+      <header>
+        <h3>{title}</h3>
+        {aside}
+      </header>
       {children}
     </section>
   );
 }
 
-export function Segmented<T extends string>({ label, value, options, onChange }: {
-  label: string; value: T; options: { value: T; label: string }[]; onChange: (value: T) => void;
+export function Segmented<T extends string>({
+  label,
+  value,
+  options,
+  onChange,
+}: {
+  label: string;
+  value: T;
+  options: { value: T; label: string }[];
+  onChange: (value: T) => void;
 }) {
   return (
     <div class="segmented" role="radiogroup" aria-label={label}>
       {options.map((option) => (
-        <button type="button" role="radio" key={option.value} aria-checked={option.value === value} onClick={() => onChange(option.value)}>{option.label}</button>
+        <button
+          type="button"
+          role="radio"
+          key={option.value}
+          aria-checked={option.value === value}
+          onClick={() => onChange(option.value)}
+        >
+          {option.label}
+        </button>
       ))}
     </div>
   );

@@ -4,12 +4,32 @@ import { lookAt, rows, simulation, timeShown } from "../run/run";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { Plot } from "./plot";
 
-function Figure({ label, value, unit, note, chip }: { label: string; value: string; unit: string; note?: string; chip?: string }) {
+function Figure({
+  label,
+  value,
+  unit,
+  note,
+  chip,
+}: {
+  label: string;
+  value: string;
+  unit: string;
+  note?: string;
+  chip?: string;
+}) {
   return (
     <div class="figure">
       <span class="figure-label">{label}</span>
-      <span class="figure-value" data-figure={label}>{value}<small>{unit}</small></span>
-      {note && <span class="figure-note">{chip && <i class="swatch" style={{ background: chip }} aria-hidden="true" />}{note}</span>}
+      <span class="figure-value" data-figure={label}>
+        {value}
+        <small>{unit}</small>
+      </span>
+      {note && (
+        <span class="figure-note">
+          {chip && <i class="swatch" style={{ background: chip }} aria-hidden="true" />}
+          {note}
+        </span>
+      )}
     </div>
   );
 }
@@ -33,10 +53,22 @@ function Zones() {
   if (zones.length === 0) return null;
   return (
     <table class="figures-table">
-      <thead><tr><th>Zone</th><th>mL</th><th>mmHg</th><th>mm</th></tr></thead>
+      <thead>
+        <tr>
+          <th>Zone</th>
+          <th>mL</th>
+          <th>mmHg</th>
+          <th>mm</th>
+        </tr>
+      </thead>
       <tbody>
         {zones.map((zone) => (
-          <tr key={zone.name}><th>{readable(zone.name)}</th><td>{zone.volumeMl.toFixed(2)}</td><td>{(zone.meanPressurePa * mmHgPerPa).toFixed(1)}</td><td>{zone.maxThicknessMm.toFixed(1)}</td></tr>
+          <tr key={zone.name}>
+            <th>{readable(zone.name)}</th>
+            <td>{zone.volumeMl.toFixed(2)}</td>
+            <td>{(zone.meanPressurePa * mmHgPerPa).toFixed(1)}</td>
+            <td>{zone.maxThicknessMm.toFixed(1)}</td>
+          </tr>
         ))}
       </tbody>
     </table>
@@ -53,15 +85,54 @@ export function Figures() {
   return (
     <aside class="figures" aria-label="Figures">
       <Figure label="Injected" value={(row?.injectedMl ?? 0).toFixed(2)} unit="mL" />
-      <Figure label="Highest pressure" value={pressure.toFixed(1)} unit="mmHg" note={`${((row?.maxPressurePa ?? 0) / 1000).toFixed(2)} kPa · ${pressureBands[band].name} mmHg`} chip={cssOf(pressureBands[band].colour)} />
+      <Figure
+        label="Highest pressure"
+        value={pressure.toFixed(1)}
+        unit="mmHg"
+        note={`${((row?.maxPressurePa ?? 0) / 1000).toFixed(2)} kPa · ${pressureBands[band].name} mmHg`}
+        chip={cssOf(pressureBands[band].colour)}
+      />
       <Figure label="Skin rises" value={(row?.skinMaxDisplacementMm ?? 0).toFixed(1)} unit="mm" />
       <Figure label="Simulated time" value={(timeShown.value ?? row?.timeS ?? 0).toFixed(1)} unit="s" />
       <Zones />
       {all.length > 1 && (
         <>
-          <Plot title="Volume" unit="mL" times={times} now={timeShown.value} onPick={pick} lines={[{ name: "injected", colour: "#0b6e6e", values: all.map(({ injectedMl }) => injectedMl) }]} />
-          <Plot title="Highest pressure" unit="mmHg" times={times} now={timeShown.value} onPick={pick} lines={[{ name: "pressure", colour: "#a8321f", values: all.map(({ maxPressurePa }) => maxPressurePa * mmHgPerPa) }]} />
-          <Plot title="Skin rises" unit="mm" times={times} now={timeShown.value} onPick={pick} lines={[{ name: "skin", colour: "#34507a", values: all.map(({ skinMaxDisplacementMm }) => skinMaxDisplacementMm) }]} />
+          <Plot
+            title="Volume"
+            unit="mL"
+            times={times}
+            now={timeShown.value}
+            onPick={pick}
+            lines={[{ name: "injected", colour: "#0b6e6e", values: all.map(({ injectedMl }) => injectedMl) }]}
+          />
+          <Plot
+            title="Highest pressure"
+            unit="mmHg"
+            times={times}
+            now={timeShown.value}
+            onPick={pick}
+            lines={[
+              {
+                name: "pressure",
+                colour: "#a8321f",
+                values: all.map(({ maxPressurePa }) => maxPressurePa * mmHgPerPa),
+              },
+            ]}
+          />
+          <Plot
+            title="Skin rises"
+            unit="mm"
+            times={times}
+            now={timeShown.value}
+            onPick={pick}
+            lines={[
+              {
+                name: "skin",
+                colour: "#34507a",
+                values: all.map(({ skinMaxDisplacementMm }) => skinMaxDisplacementMm),
+              },
+            ]}
+          />
         </>
       )}
     </aside>

@@ -16,8 +16,13 @@ export function onKey(event: KeyboardEvent): void {
   const target = event.target as HTMLElement;
   if (event.ctrlKey || event.metaKey || event.altKey) return;
   if (event.key === "Escape") tool.value = { kind: "turn" };
-  if (target.closest("input[type=number], input[type=password], select, dialog")) return;
-  const itsOwn = event.key === " " ? "button, a, input" : event.key.startsWith("Arrow") || event.key === "End" ? "input[type=range]" : "";
+  if (target.closest("input[type=number], input[type=text], input[type=password], select, dialog")) return;
+  const itsOwn =
+    event.key === " "
+      ? "button, a, input"
+      : event.key.startsWith("Arrow") || event.key === "End"
+        ? "input[type=range]"
+        : "";
   if (itsOwn && target.closest(itsOwn)) return;
   if (/^[1-4]$/.test(event.key)) step.value = steps[Number(event.key) - 1];
   else if (event.key === " ") void runOrPause();
@@ -26,7 +31,8 @@ export function onKey(event: KeyboardEvent): void {
   else if (event.key === "End") lookAt(undefined);
   else if (event.key === "[") brushMm.value = Math.max(1, brushMm.value - 1);
   else if (event.key === "]") brushMm.value = Math.min(40, brushMm.value + 1);
-  else if (event.key === "c" && hasResult.value) compare.value = compare.value === "after" ? "side" : compare.value === "side" ? "slider" : "after";
+  else if (event.key === "c" && hasResult.value)
+    compare.value = compare.value === "after" ? "side" : compare.value === "side" ? "slider" : "after";
   else if (event.key === "d") quantity.value = "displacement";
   else if (event.key === "p") quantity.value = "pressure";
   else if (event.key === "t") quantity.value = "thickness";

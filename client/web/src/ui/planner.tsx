@@ -26,10 +26,21 @@ function Steps() {
   return (
     <nav class="steps" aria-label="Steps of the plan">
       {steps.map(({ key, label, done }, index) => (
-        <button type="button" key={key} aria-current={step.value === key ? "step" : undefined} class={done() ? "done" : ""} onClick={() => {
-          tool.value = { kind: "turn" };
-          step.value = key;
-        }}><span class="number" aria-hidden="true">{done() ? "✓" : index + 1}</span>{label}</button>
+        <button
+          type="button"
+          key={key}
+          aria-current={step.value === key ? "step" : undefined}
+          class={done() ? "done" : ""}
+          onClick={() => {
+            tool.value = { kind: "turn" };
+            step.value = key;
+          }}
+        >
+          <span class="number" aria-hidden="true">
+            {done() ? "✓" : index + 1}
+          </span>
+          {label}
+        </button>
       ))}
     </nav>
   );
@@ -52,8 +63,18 @@ function Problem() {
   return (
     <div class="problem" role="alert">
       <p>{now.message}</p>
-      {now.violations.length > 0 && <ul>{now.violations.map(({ field, description }) => <li key={field}><code>{field}</code> {description}</li>)}</ul>}
-      <button type="button" class="icon" aria-label="Dismiss" onClick={() => (problem.value = undefined)}>×</button>
+      {now.violations.length > 0 && (
+        <ul>
+          {now.violations.map(({ field, description }) => (
+            <li key={field}>
+              <code>{field}</code> {description}
+            </li>
+          ))}
+        </ul>
+      )}
+      <button type="button" class="icon" aria-label="Dismiss" onClick={() => (problem.value = undefined)}>
+        ×
+      </button>
     </div>
   );
 }
@@ -90,7 +111,11 @@ export function Planner() {
       <div class="middle">
         <Stage />
         {now === "run" && <Timeline />}
-        {connection.value === "lost" && <div class="lost" role="status">Connection lost. Trying again; nothing is lost.</div>}
+        {connection.value === "lost" && (
+          <div class="lost" role="status">
+            Connection lost. Trying again; nothing is lost.
+          </div>
+        )}
         <Busy />
         <Problem />
       </div>

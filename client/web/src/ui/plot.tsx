@@ -35,22 +35,43 @@ export function Plot({ title, unit, times, lines, now, onPick }: Props) {
   const y = (v: number): number => top + (1 - Math.max(0, v) / high) * (height - top - bottom);
   const stride = Math.max(1, Math.floor(times.length / mostPoints));
   const path = (values: number[]): string =>
-    values.map((v, k) => ({ v, k })).filter(({ k }) => k % stride === 0 || k === values.length - 1).map(({ v, k }, n) => `${n === 0 ? "M" : "L"}${x(times[k]).toFixed(1)} ${y(v).toFixed(1)}`).join("");
+    values
+      .map((v, k) => ({ v, k }))
+      .filter(({ k }) => k % stride === 0 || k === values.length - 1)
+      .map(({ v, k }, n) => `${n === 0 ? "M" : "L"}${x(times[k]).toFixed(1)} ${y(v).toFixed(1)}`)
+      .join("");
   const latest = lines.map(({ values }) => values.at(-1)).filter((v): v is number => v !== undefined);
   return (
     <figure class="plot">
-      <figcaption><span>{title}</span><span class="quiet">{unit}</span></figcaption>
-      <svg viewBox={`0 0 ${width} ${height}`} role="img" aria-label={`${title} over time, now ${latest.map((v) => v.toFixed(2)).join(" and ")} ${unit}`}
+      <figcaption>
+        <span>{title}</span>
+        <span class="quiet">{unit}</span>
+      </figcaption>
+      <svg
+        viewBox={`0 0 ${width} ${height}`}
+        role="img"
+        aria-label={`${title} over time, now ${latest.map((v) => v.toFixed(2)).join(" and ")} ${unit}`}
         onClick={(event) => {
           const box = event.currentTarget.getBoundingClientRect();
           onPick?.(Math.max(0, (((event.clientX - box.left) / box.width) * width - left) / (width - left - 4)) * end);
-        }}>
+        }}
+      >
         {ticks(high).map((tick) => (
-          <g key={tick}><line class="grid" x1={left} x2={width - 4} y1={y(tick)} y2={y(tick)} /><text x={left - 4} y={y(tick) + 3} text-anchor="end">{Number(tick.toPrecision(3))}</text></g>
+          <g key={tick}>
+            <line class="grid" x1={left} x2={width - 4} y1={y(tick)} y2={y(tick)} />
+            <text x={left - 4} y={y(tick) + 3} text-anchor="end">
+              {Number(tick.toPrecision(3))}
+            </text>
+          </g>
         ))}
-        <text x={width - 4} y={height - 3} text-anchor="end">{end.toFixed(end < 10 ? 1 : 0)} s</text>
-        {times.length > 1 && lines.map(({ name, colour, values }) => <path key={name} d={path(values)} style={{ stroke: colour }} />)}
-        {now !== undefined && <line class="now" x1={x(Math.min(now, end))} x2={x(Math.min(now, end))} y1={top} y2={height - bottom} />}
+        <text x={width - 4} y={height - 3} text-anchor="end">
+          {end.toFixed(end < 10 ? 1 : 0)} s
+        </text>
+        {times.length > 1 &&
+          lines.map(({ name, colour, values }) => <path key={name} d={path(values)} style={{ stroke: colour }} />)}
+        {now !== undefined && (
+          <line class="now" x1={x(Math.min(now, end))} x2={x(Math.min(now, end))} y1={top} y2={height - bottom} />
+        )}
       </svg>
     </figure>
   );

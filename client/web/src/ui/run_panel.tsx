@@ -7,18 +7,26 @@ import { simulations } from "../api/client";
 import { uploadScan } from "../api/upload";
 import { readable } from "../plan/anatomy";
 import { build } from "../plan/actions";
-import { writePlan } from "../plan/plan_file";
-import { attempt, busy, plan, scan, scanFile, tell } from "../plan/state";
+import { attempt, busy, canRun, scanFile } from "../plan/state";
 import { liveSite, tool } from "../plan/tools";
-import { save, seriesCsv, stateClass, stateWord, surfaceObj } from "../run/exports";
-import { close, command, create as createSimulation, hasResult, inject, isRunning, isUnderWay, openExisting, recorded, rows, simulation, state } from "../run/run";
+import { stateClass, stateWord } from "../run/exports";
+import {
+  close,
+  command,
+  create as createSimulation,
+  hasResult,
+  inject,
+  isRunning,
+  isUnderWay,
+  recorded,
+  simulation,
+  state,
+} from "../run/run";
 import { FileButton, NumberField, Section, SelectField } from "./fields";
-import { distance, quantity, shownScene } from "./stage_state";
+import { distance, quantity } from "./stage_state";
+import { Exports, Recorded } from "./take_home";
 
 const more = signal({ zone: "", volumeMl: 0.5 as number | undefined, rateMlPerS: 1 as number | undefined });
-
-/** A plan needs a face, unless it is of a plate. */
-const canRun = (): boolean => scan.value !== undefined || plan.value.model?.geometry.case === "square";
 
 async function run(): Promise<void> {
   if (await build()) await createSimulation(true);
@@ -28,35 +36,112 @@ function Controls() {
   const now = state.value;
   const ready = !isUnderWay.value;
   return (
-    <Section title="Simulation" aside={<span class={`state ${stateClass(simulation.value)}`}>{recorded.value ? "Recorded" : stateWord(simulation.value)}</span>}>
+    <Section
+      title="Simulation"
+      aside={
+        <span class={`state ${stateClass(simulation.value)}`}>
+          {recorded.value ? "Recorded" : stateWord(simulation.value)}
+        </span>
+      }
+    >
       <div class="row">
-        {ready && <button type="button" class="button primary grow" disabled={busy.value !== undefined || !canRun()} onClick={() => void run()}>▶ Run</button>}
-        {now === Simulation_State.READY && <button type="button" class="button primary grow" onClick={() => void command("startSimulation")}>▶ Start</button>}
-        {isRunning.value && <button type="button" class="button primary grow" onClick={() => void command("pauseSimulation")}>❚❚ Pause</button>}
-        {now === Simulation_State.PAUSED && <button type="button" class="button primary grow" onClick={() => void command("resumeSimulation")}>▶ Resume</button>}
-        {(isRunning.value || now === Simulation_State.PAUSED) && <button type="button" class="button" onClick={() => void command("stopSimulation")}>■ Stop</button>}
-        {(now !== Simulation_State.STATE_UNSPECIFIED || recorded.value) && ready && <button type="button" class="button" onClick={close}>Close</button>}
+        {ready && (
+          <button
+            type="button"
+            class="button primary grow"
+            disabled={busy.value !== undefined || !canRun.value}
+            onClick={() => void run()}
+          >
+            ▶ Run
+          </button>
+        )}
+        {now === Simulation_State.READY && (
+          <button type="button" class="button primary grow" onClick={() => void command("startSimulation")}>
+            ▶ Start
+          </button>
+        )}
+        {isRunning.value && (
+          <button type="button" class="button primary grow" onClick={() => void command("pauseSimulation")}>
+            ❚❚ Pause
+          </button>
+        )}
+        {now === Simulation_State.PAUSED && (
+          <button type="button" class="button primary grow" onClick={() => void command("resumeSimulation")}>
+            ▶ Resume
+          </button>
+        )}
+        {(isRunning.value || now === Simulation_State.PAUSED) && (
+          <button type="button" class="button" onClick={() => void command("stopSimulation")}>
+            ■ Stop
+          </button>
+        )}
+        {(now !== Simulation_State.STATE_UNSPECIFIED || recorded.value) && ready && (
+          <button type="button" class="button" onClick={close}>
+            Close
+          </button>
+        )}
       </div>
-      {simulation.value?.reason && <p class={now === Simulation_State.FAILED ? "complaint" : "quiet"}>{simulation.value.reason}</p>}
-      {simulation.value?.summary?.preview && <p class="quiet">Preview: {["", "waiting", "running", "done", "failed", "outdated"][simulation.value.summary.preview.state]}{simulation.value.summary.preview.differenceMaxMm !== undefined && `, ${simulation.value.summary.preview.differenceMaxMm.toFixed(2)} mm off at most`}</p>}
+      {simulation.value?.reason && (
+        <p class={now === Simulation_State.FAILED ? "complaint" : "quiet"}>{simulation.value.reason}</p>
+      )}
+      {simulation.value?.summary?.preview && (
+        <p class="quiet">
+          Preview: {["", "waiting", "running", "done", "failed", "outdated"][simulation.value.summary.preview.state]}
+          {simulation.value.summary.preview.differenceMaxMm !== undefined &&
+            `, ${simulation.value.summary.preview.differenceMaxMm.toFixed(2)} mm off at most`}
+        </p>
+      )}
     </Section>
   );
 }
 
 function InjectMore() {
   const names = (simulation.value?.spec?.films ?? []).flatMap((film) => film.zones.map(({ name }) => name));
-  const zone = names.includes(more.value.zone) ? more.value.zone : names[0] ?? "";
+  const zone = names.includes(more.value.zone) ? more.value.zone : (names[0] ?? "");
   const placing = tool.value.kind === "live_site";
   return (
     <Section title="Inject more">
-      <SelectField label="Into" value={zone} options={names.map((name) => ({ value: name, label: readable(name) }))} field="injection.zone" onChange={(value) => (more.value = { ...more.value, zone: value })} />
+      <SelectField
+        label="Into"
+        value={zone}
+        options={names.map((name) => ({ value: name, label: readable(name) }))}
+        field="injection.zone"
+        onChange={(value) => (more.value = { ...more.value, zone: value })}
+      />
       <div class="pair">
-        <NumberField label="Volume" unit="mL" step={0.1} value={more.value.volumeMl} field="injection.volume_ml" onChange={(volumeMl) => (more.value = { ...more.value, volumeMl })} />
-        <NumberField label="Rate" unit="mL/s" step={0.1} value={more.value.rateMlPerS} field="injection.rate_ml_per_s" onChange={(rateMlPerS) => (more.value = { ...more.value, rateMlPerS })} />
+        <NumberField
+          label="Volume"
+          unit="mL"
+          step={0.1}
+          value={more.value.volumeMl}
+          field="injection.volume_ml"
+          onChange={(volumeMl) => (more.value = { ...more.value, volumeMl })}
+        />
+        <NumberField
+          label="Rate"
+          unit="mL/s"
+          step={0.1}
+          value={more.value.rateMlPerS}
+          field="injection.rate_ml_per_s"
+          onChange={(rateMlPerS) => (more.value = { ...more.value, rateMlPerS })}
+        />
       </div>
       <div class="row">
-        <button type="button" class="button small" aria-pressed={placing} onClick={() => (tool.value = placing ? { kind: "turn" } : { kind: "live_site" })}>{liveSite.value ? "Move the point" : "Place the point"}</button>
-        <button type="button" class="button" onClick={() => void inject(create(InjectionSchema, { ...more.value, zone, site: liveSite.value }))}>Inject</button>
+        <button
+          type="button"
+          class="button small"
+          aria-pressed={placing}
+          onClick={() => (tool.value = placing ? { kind: "turn" } : { kind: "live_site" })}
+        >
+          {liveSite.value ? "Move the point" : "Place the point"}
+        </button>
+        <button
+          type="button"
+          class="button"
+          onClick={() => void inject(create(InjectionSchema, { ...more.value, zone, site: liveSite.value }))}
+        >
+          Inject
+        </button>
       </div>
     </Section>
   );
@@ -66,7 +151,13 @@ async function compareWith(file: File): Promise<void> {
   await attempt("Measuring the distance to the target", async (progress) => {
     const { name, spec } = simulation.value as Simulation;
     const parent = spec!.model.split("/models/")[0];
-    const target = await uploadScan(parent, file.name, await file.arrayBuffer(), scanFile.value.unit ?? ScanUnit.MILLIMETRE, (share) => progress(share / 2));
+    const target = await uploadScan(
+      parent,
+      file.name,
+      await file.arrayBuffer(),
+      scanFile.value.unit ?? ScanUnit.MILLIMETRE,
+      (share) => progress(share / 2),
+    );
     progress(0.6);
     distance.value = await simulations.evaluateSimulation({ name, targetScan: target.name });
     quantity.value = "distance";
@@ -81,66 +172,32 @@ function Target() {
       <FileButton label="Compare with a scan…" accept=".obj,.ply,.stl" onFiles={([file]) => void compareWith(file)} />
       {result && before && (
         <table class="figures-table">
-          <thead><tr><th /><th>before</th><th>simulated</th></tr></thead>
+          <thead>
+            <tr>
+              <th />
+              <th>before</th>
+              <th>simulated</th>
+            </tr>
+          </thead>
           <tbody>
-            <tr><th>Mean</th><td>{before.meanMm.toFixed(2)}</td><td>{result.meanMm.toFixed(2)} mm</td></tr>
-            <tr><th>RMS</th><td>{before.rmsMm.toFixed(2)}</td><td>{result.rmsMm.toFixed(2)} mm</td></tr>
-            <tr><th>95th percentile</th><td>{before.p95Mm.toFixed(2)}</td><td>{result.p95Mm.toFixed(2)} mm</td></tr>
+            <tr>
+              <th>Mean</th>
+              <td>{before.meanMm.toFixed(2)}</td>
+              <td>{result.meanMm.toFixed(2)} mm</td>
+            </tr>
+            <tr>
+              <th>RMS</th>
+              <td>{before.rmsMm.toFixed(2)}</td>
+              <td>{result.rmsMm.toFixed(2)} mm</td>
+            </tr>
+            <tr>
+              <th>95th percentile</th>
+              <td>{before.p95Mm.toFixed(2)}</td>
+              <td>{result.p95Mm.toFixed(2)} mm</td>
+            </tr>
           </tbody>
         </table>
       )}
-    </Section>
-  );
-}
-
-function Exports() {
-  const name = plan.value.name || "plan";
-  const savePicture = async (): Promise<void> => {
-    try {
-      if (shownScene.value) save(`${name}.png`, await shownScene.value.viewport.capture());
-    } catch (error) {
-      tell(error);
-    }
-  };
-  const saveMesh = (): void => {
-    const scene = shownScene.value;
-    if (scene?.points && scene.mesh) save(`${name}.obj`, surfaceObj(scene.points, scene.mesh.cells, scene.mesh.corners));
-  };
-  return (
-    <Section title="Take home">
-      <div class="row wrap">
-        <button type="button" class="button" disabled={!canRun()} onClick={() => save(`${name}.json`, writePlan(plan.value, scanFile.value.name, scanFile.value.unit))}>Plan</button>
-        <button type="button" class="button" disabled={rows.value.length === 0} onClick={() => save(`${name}.csv`, seriesCsv(rows.value))}>CSV</button>
-        <button type="button" class="button" onClick={() => void savePicture()}>Picture</button>
-        <button type="button" class="button" disabled={!hasResult.value} onClick={saveMesh}>Mesh</button>
-      </div>
-      <p class="quiet">The plan runs with <code>lipofill run</code> beside {scanFile.value.name}.</p>
-    </Section>
-  );
-}
-
-const known = signal<Simulation[]>([]);
-
-function Recorded() {
-  const load = async (): Promise<void> => {
-    try {
-      known.value = (await simulations.listSimulations({ pageSize: 1000 })).simulations;
-    } catch (error) {
-      tell(error);
-    }
-  };
-  return (
-    <Section title="Open a run">
-      <div class="field" onFocusCapture={() => void load()} onPointerEnter={() => void load()}>
-        <SelectField label="Of the daemon" value={known.value.some(({ name }) => name === simulation.value?.name) ? simulation.value!.name : ""} onChange={(value) => {
-          const next = known.value.find(({ name }) => name === value);
-          if (next) void openExisting(next);
-        }} options={[{ value: "", label: "Choose…" }, ...known.value.map((one) => ({ value: one.name, label: `${one.displayName || one.name.split("/")[1]} · ${stateWord(one)} · ${(one.summary?.injectedMl ?? 0).toFixed(1)} mL` }))]} />
-      </div>
-      <FileButton label="Result folder…" folder onFiles={(files) => void attempt("Reading the results", async (progress) => {
-        const { openFolder } = await import("../run/recorded"); // and with it the toolkit's reader
-        await openFolder(files, progress);
-      })} />
     </Section>
   );
 }

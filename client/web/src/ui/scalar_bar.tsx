@@ -15,7 +15,11 @@ function Bands({ map }: { map: ColourMap }) {
       {pressureBands.map(({ colour, from, name }, k) => {
         const low = Math.max(0, from);
         const high = Math.min(map.high, pressureBands[k + 1]?.from ?? map.high);
-        return <div key={name} style={{ background: cssOf(colour), flexGrow: high - low }}><span>{name}</span></div>;
+        return (
+          <div key={name} style={{ background: cssOf(colour), flexGrow: high - low }}>
+            <span>{name}</span>
+          </div>
+        );
       })}
     </div>
   );
@@ -26,10 +30,20 @@ export function ScalarBar({ map, quantity }: { map: ColourMap; quantity: Quantit
   const marks = [0, 0.25, 0.5, 0.75, 1].map((share) => map.low + share * (map.high - map.low));
   return (
     <div class="scalar-bar" role="img" aria-label={`${label}, from ${map.low} to ${map.high} ${unit}`}>
-      <div class="scalar-title">{label}<br /><span class="quiet">{unit}</span></div>
-      {quantity === "pressure" ? <Bands map={map} /> : (
+      <div class="scalar-title">
+        {label}
+        <br />
+        <span class="quiet">{unit}</span>
+      </div>
+      {quantity === "pressure" ? (
+        <Bands map={map} />
+      ) : (
         <div class="bar" style={{ background: gradient(map) }}>
-          {marks.map((mark, k) => <span key={k} style={{ bottom: `${k * 25}%` }}>{Number(mark.toPrecision(3))}</span>)}
+          {marks.map((mark, k) => (
+            <span key={k} style={{ bottom: `${k * 25}%` }}>
+              {Number(mark.toPrecision(3))}
+            </span>
+          ))}
         </div>
       )}
     </div>

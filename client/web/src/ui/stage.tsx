@@ -11,15 +11,24 @@ import { compare, map, probe, quantity, shownScene, split } from "./stage_state"
 import { ScalarBar } from "./scalar_bar";
 import { ViewTools } from "./view_tools";
 
-
 function Probe() {
   const now = probe.value;
   if (!now) return null;
   return (
     <div class="probe" style={{ left: `${now.x + 14}px`, top: `${now.y + 14}px` }}>
       <b>{now.displacementMm.toFixed(2)} mm</b> displaced
-      {now.thicknessMm > 0.06 && <><br /><b>{now.pressureMmHg.toFixed(1)} mmHg</b> in {now.thicknessMm.toFixed(2)} mm of fat</>}
-      {now.distanceMm !== undefined && <><br /><b>{now.distanceMm.toFixed(2)} mm</b> from the target</>}
+      {now.thicknessMm > 0.06 && (
+        <>
+          <br />
+          <b>{now.pressureMmHg.toFixed(1)} mmHg</b> in {now.thicknessMm.toFixed(2)} mm of fat
+        </>
+      )}
+      {now.distanceMm !== undefined && (
+        <>
+          <br />
+          <b>{now.distanceMm.toFixed(2)} mm</b> from the target
+        </>
+      )}
     </div>
   );
 }
@@ -28,8 +37,16 @@ function Slider() {
   return (
     <>
       <div class="divider" style={{ left: `${100 * split.value}%` }} />
-      <input class="split" type="range" min={0} max={1} step={0.01} value={split.value} aria-label="Share of the picture before"
-        onInput={(event) => (split.value = Number(event.currentTarget.value))} />
+      <input
+        class="split"
+        type="range"
+        min={0}
+        max={1}
+        step={0.01}
+        value={split.value}
+        aria-label="Share of the picture before"
+        onInput={(event) => (split.value = Number(event.currentTarget.value))}
+      />
     </>
   );
 }
@@ -44,7 +61,10 @@ export function Stage() {
     shownScene.value = scene;
     const ends = [
       countPictures(scene, whole.current!),
-      bindFace(scene), bindPatch(scene), bindMarkers(scene), bindFrame(scene),
+      bindFace(scene),
+      bindPatch(scene),
+      bindMarkers(scene),
+      bindFrame(scene),
       effect(() => scene.compare(compare.value === "after" ? undefined : before.current!)),
     ];
     return () => {
@@ -59,13 +79,39 @@ export function Stage() {
   const comparing = mode !== "after";
   return (
     <div class={`stage mode-${mode}`} ref={whole} data-tool={tool.value.kind}>
-      <div class="view before" ref={before} hidden={!comparing} aria-label="The face before, in three dimensions"
-        style={mode === "slider" ? { clipPath: `inset(0 ${100 * (1 - split.value)}% 0 0)` } : {}} />
-      <div class="view after" ref={main} tabIndex={0} role="application" aria-label="The face, in three dimensions: drag to turn, wheel to come nearer" />
-      {comparing && <><span class="tag tag-before">Before</span><span class="tag tag-after">After</span></>}
+      <div
+        class="view before"
+        ref={before}
+        hidden={!comparing}
+        aria-label="The face before, in three dimensions"
+        style={mode === "slider" ? { clipPath: `inset(0 ${100 * (1 - split.value)}% 0 0)` } : {}}
+      />
+      <div
+        class="view after"
+        ref={main}
+        tabIndex={0}
+        role="application"
+        aria-label="The face, in three dimensions: drag to turn, wheel to come nearer"
+      />
+      {comparing && (
+        <>
+          <span class="tag tag-before">Before</span>
+          <span class="tag tag-after">After</span>
+        </>
+      )}
       {mode === "slider" && <Slider />}
-      {hint && <div class="tool-hint" role="status">{hint}{tool.value.kind === "paint" && ` (${brushMm.value} mm)`}<button type="button" class="link" onClick={() => (tool.value = { kind: "turn" })}>Done</button></div>}
-      {quantity.value !== "none" && map.value && meshes.value && hasFrame.value && <ScalarBar map={map.value} quantity={quantity.value} />}
+      {hint && (
+        <div class="tool-hint" role="status">
+          {hint}
+          {tool.value.kind === "paint" && ` (${brushMm.value} mm)`}
+          <button type="button" class="link" onClick={() => (tool.value = { kind: "turn" })}>
+            Done
+          </button>
+        </div>
+      )}
+      {quantity.value !== "none" && map.value && meshes.value && hasFrame.value && (
+        <ScalarBar map={map.value} quantity={quantity.value} />
+      )}
       <Probe />
       <ViewTools />
     </div>

@@ -59,7 +59,11 @@ export function bindPatch(scene: FaceScene): End {
   });
   const layers = effect(() => {
     const tissue = showLayers.value && step.value === "tissue" ? modelMeshes.value?.get("tissue") : undefined;
-    scene.setLayers(tissue, (model.value?.spec?.layers ?? []).map(({ elementsThrough }) => elementsThrough ?? 1), layerShown.value);
+    scene.setLayers(
+      tissue,
+      (model.value?.spec?.layers ?? []).map(({ elementsThrough }) => elementsThrough ?? 1),
+      layerShown.value,
+    );
   });
   return () => [patch, colours, layers].forEach((end) => end());
 }
@@ -78,7 +82,12 @@ function onSkin(scene: FaceScene, at: Point | undefined): Point | undefined {
 }
 
 const colour: Record<"landmark" | "active" | "corner" | "site" | "ligament" | "wall", Rgb> = {
-  landmark: [20, 96, 110], active: [230, 120, 0], corner: [40, 70, 140], site: [190, 30, 60], ligament: [110, 60, 140], wall: [40, 40, 40],
+  landmark: [20, 96, 110],
+  active: [230, 120, 0],
+  corner: [40, 70, 140],
+  site: [190, 30, 60],
+  ligament: [110, 60, 140],
+  wall: [40, 40, 40],
 };
 
 export function bindMarkers(scene: FaceScene): End {
@@ -86,10 +95,14 @@ export function bindMarkers(scene: FaceScene): End {
     void scanMesh.value;
     const points = region.value?.landmarksMm ?? {};
     const place = (at: Parameters<typeof locate>[0]): Point | undefined =>
-      onSkin(scene, locate(at, points, region.value?.axes, chart.value && ((xi, eta) => chart.value!.position(xi, eta))));
+      onSkin(
+        scene,
+        locate(at, points, region.value?.axes, chart.value && ((xi, eta) => chart.value!.position(xi, eta))),
+      );
     const balls: Ball[] = [];
     const lines: Line[] = [];
-    const add = (at: Point | undefined, kind: keyof typeof colour, radius = 1.6): void => void (at && balls.push({ at, colour: colour[kind], radius }));
+    const add = (at: Point | undefined, kind: keyof typeof colour, radius = 1.6): void =>
+      void (at && balls.push({ at, colour: colour[kind], radius }));
     if (step.value === "face") {
       const active = tool.value.kind === "landmark" ? tool.value.name : "";
       for (const [name, at] of Object.entries(points)) add(pointOf(at), name === active ? "active" : "landmark");
@@ -97,14 +110,17 @@ export function bindMarkers(scene: FaceScene): End {
     if (step.value === "face" || step.value === "tissue") {
       const corners = (region.value?.corners ?? []).map(place).filter((at) => at !== undefined);
       if (step.value === "tissue") corners.forEach((at) => add(at, "corner"));
-      if (corners.length === 4 && modelMeshes.value === undefined && step.value === "tissue") lines.push({ points: [...corners, corners[0]], colour: colour.corner });
+      if (corners.length === 4 && modelMeshes.value === undefined && step.value === "tissue")
+        lines.push({ points: [...corners, corners[0]], colour: colour.corner });
     }
     if (step.value === "fat" || step.value === "run") {
       const { injections = [], ligaments = [], films = [] } = plan.value.simulation ?? {};
       for (const { site } of injections) if (site) add(place(site), "site");
       if (liveSite.value) add(place(liveSite.value), "active");
       if (step.value === "fat") {
-        for (const ligament of ligaments) if (ligament.place.case === "points") ligament.place.value.points.forEach((at) => add(place(at), "ligament", 1.2));
+        for (const ligament of ligaments)
+          if (ligament.place.case === "points")
+            ligament.place.value.points.forEach((at) => add(place(at), "ligament", 1.2));
         for (const wall of films.flatMap((film) => film.walls)) {
           if (wall.place.case !== "path") continue;
           const along = wall.place.value.points.map(place).filter((at) => at !== undefined);

@@ -9,12 +9,25 @@ export function Timeline() {
   const following = lookedAt.value === undefined;
   return (
     <div class="timeline">
-      <input type="range" min={0} max={end} step={0.01} value={now} aria-label="Simulated time" aria-valuetext={`${now.toFixed(2)} seconds`} disabled={!hasResult.value}
-        onInput={(event) => lookAt(Number(event.currentTarget.value))} />
+      <input
+        type="range"
+        min={0}
+        max={end}
+        step={0.01}
+        value={now}
+        aria-label="Simulated time"
+        aria-valuetext={`${now.toFixed(2)} seconds`}
+        disabled={!hasResult.value}
+        onInput={(event) => lookAt(Number(event.currentTarget.value))}
+      />
       <output>{now.toFixed(2)} s</output>
-      <button type="button" class="button small" aria-pressed={following} onClick={() => lookAt(undefined)}>Newest</button>
+      <button type="button" class="button small" aria-pressed={following} onClick={() => lookAt(undefined)}>
+        Newest
+      </button>
       {frame.peek()?.preview && <span class="tag-inline">Preview</span>}
-      <span class="quiet rate" title={`${skipped.peek()} frames were left out`}>{connection.value === "live" ? `${rate.value.toFixed(0)} pictures/s` : `${store.frames.length} frames`}</span>
+      <span class="quiet rate" title={`${skipped.peek()} frames were left out`}>
+        {connection.value === "live" ? `${rate.value.toFixed(0)} pictures/s` : `${store.frames.length} frames`}
+      </span>
     </div>
   );
 }

@@ -25,14 +25,34 @@ function Region() {
   const missing = landmarksOf(chosen.value, side.value).filter((name) => region.value?.landmarksMm[name] === undefined);
   return (
     <Section title="Region">
-      <SelectField label="Part of the face" value={chosen.value} options={regionLabels.map(({ key, label }) => ({ value: key, label }))} onChange={(key) => useRegion(key, side.value)} />
-      <Segmented label="Side" value={side.value} options={[{ value: "left", label: "Left" }, { value: "right", label: "Right" }]} onChange={(next) => useRegion(chosen.value, next)} />
+      <SelectField
+        label="Part of the face"
+        value={chosen.value}
+        options={regionLabels.map(({ key, label }) => ({ value: key, label }))}
+        onChange={(key) => useRegion(key, side.value)}
+      />
+      <Segmented
+        label="Side"
+        value={side.value}
+        options={[
+          { value: "left", label: "Left" },
+          { value: "right", label: "Right" },
+        ]}
+        onChange={(next) => useRegion(chosen.value, next)}
+      />
       {missing.length > 0 && <p class="hint">Needs: {missing.map(readable).join("; ")}</p>}
       <div class="row" role="group" aria-label="Correct a corner by clicking">
         <span class="quiet">Correct corner</span>
         {[0, 1, 2, 3].map((index) => (
-          <button type="button" class="button small" key={index} aria-pressed={tool.value.kind === "corner" && tool.value.index === index}
-            onClick={() => (tool.value = { kind: "corner", index })}>{index + 1}</button>
+          <button
+            type="button"
+            class="button small"
+            key={index}
+            aria-pressed={tool.value.kind === "corner" && tool.value.index === index}
+            onClick={() => (tool.value = { kind: "corner", index })}
+          >
+            {index + 1}
+          </button>
         ))}
       </div>
       <Complaint field="model.scan_region" />
@@ -41,42 +61,90 @@ function Region() {
 }
 
 const kinds = [
-  { value: TissueLayer_Kind.SKIN, label: "Skin" }, { value: TissueLayer_Kind.SUBCUTANEOUS, label: "Subcutaneous fat" },
-  { value: TissueLayer_Kind.SMAS, label: "SMAS" }, { value: TissueLayer_Kind.MUSCLE, label: "Muscle" },
+  { value: TissueLayer_Kind.SKIN, label: "Skin" },
+  { value: TissueLayer_Kind.SUBCUTANEOUS, label: "Subcutaneous fat" },
+  { value: TissueLayer_Kind.SMAS, label: "SMAS" },
+  { value: TissueLayer_Kind.MUSCLE, label: "Muscle" },
 ];
 
 function Layers() {
   const layers = plan.value.model?.layers ?? [];
   return (
     <Section title="Layers, from the skin inwards">
-      <SelectField label="Tissue figures" value={plan.value.model?.tissuePreset ?? 0} field="model.tissue_preset"
-        options={[{ value: TissuePreset.PAPER, label: "Paper (stiff muscle)" }, { value: TissuePreset.ELASTOGRAPHY, label: "Elastography (tissue at rest)" }, { value: 0, label: "As each layer says" }]}
-        onChange={(value) => editPlan(({ model: spec }) => (spec!.tissuePreset = Number(value)))} />
+      <SelectField
+        label="Tissue figures"
+        value={plan.value.model?.tissuePreset ?? 0}
+        field="model.tissue_preset"
+        options={[
+          { value: TissuePreset.PAPER, label: "Paper (stiff muscle)" },
+          { value: TissuePreset.ELASTOGRAPHY, label: "Elastography (tissue at rest)" },
+          { value: 0, label: "As each layer says" },
+        ]}
+        onChange={(value) => editPlan(({ model: spec }) => (spec!.tissuePreset = Number(value)))}
+      />
       {layers.map((layer, index) => (
         <fieldset class="layer" key={index}>
-          <legend><i class={`swatch layer-${index}`} aria-hidden="true" />{readable(layer.name || (kinds.find(({ value }) => value === layer.kind)?.label ?? "layer"))}</legend>
+          <legend>
+            <i class={`swatch layer-${index}`} aria-hidden="true" />
+            {readable(layer.name || (kinds.find(({ value }) => value === layer.kind)?.label ?? "layer"))}
+          </legend>
           {layer.thicknessMm?.kind.case !== "samples" && (
-            <NumberField label="Thickness" unit="mm" step={0.1} min={0.1} placeholder="preset" field={`model.layers[${index}].thickness_mm`}
+            <NumberField
+              label="Thickness"
+              unit="mm"
+              step={0.1}
+              min={0.1}
+              placeholder="preset"
+              field={`model.layers[${index}].thickness_mm`}
               value={layer.thicknessMm?.kind.case === "constant" ? layer.thicknessMm.kind.value : undefined}
-              onChange={(value) => editPlan(({ model: spec }) => {
-                spec!.layers[index].thicknessMm = value === undefined ? undefined : { $typeName: "lipofill.v1.ScalarField", kind: { case: "constant", value } };
-              })} />
+              onChange={(value) =>
+                editPlan(({ model: spec }) => {
+                  spec!.layers[index].thicknessMm =
+                    value === undefined
+                      ? undefined
+                      : { $typeName: "lipofill.v1.ScalarField", kind: { case: "constant", value } };
+                })
+              }
+            />
           )}
-          <NumberField label="Young's modulus" unit="kPa" min={0} placeholder="preset" value={layer.youngsModulusKpa} field={`model.layers[${index}].youngs_modulus_kpa`}
-            onChange={(value) => editPlan(({ model: spec }) => (spec!.layers[index].youngsModulusKpa = value))} />
-          {layers.length > 1 && <button type="button" class="link" onClick={() => editPlan(({ model: spec }) => void spec!.layers.splice(index, 1))}>Remove</button>}
+          <NumberField
+            label="Young's modulus"
+            unit="kPa"
+            min={0}
+            placeholder="preset"
+            value={layer.youngsModulusKpa}
+            field={`model.layers[${index}].youngs_modulus_kpa`}
+            onChange={(value) => editPlan(({ model: spec }) => (spec!.layers[index].youngsModulusKpa = value))}
+          />
+          {layers.length > 1 && (
+            <button
+              type="button"
+              class="link"
+              onClick={() => editPlan(({ model: spec }) => void spec!.layers.splice(index, 1))}
+            >
+              Remove
+            </button>
+          )}
           <Complaint field={`model.layers[${index}].name`} />
         </fieldset>
       ))}
-      <SelectField label="Add a layer" value="" options={[{ value: "", label: "Choose…" }, ...kinds]} onChange={(value) => {
-        if (value === "") return;
-        editPlan(({ model: spec }) => {
-          const name = freeName(TissueLayer_Kind[Number(value)].toLowerCase(), spec!.layers.map((layer) => layer.name));
-          const layer = create(TissueLayerSchema, { name, kind: Number(value) });
-          const inner = spec!.layers.findIndex(({ kind }) => kind > Number(value));
-          spec!.layers.splice(inner < 0 ? spec!.layers.length : inner, 0, layer);
-        });
-      }} />
+      <SelectField
+        label="Add a layer"
+        value=""
+        options={[{ value: "", label: "Choose…" }, ...kinds]}
+        onChange={(value) => {
+          if (value === "") return;
+          editPlan(({ model: spec }) => {
+            const name = freeName(
+              TissueLayer_Kind[Number(value)].toLowerCase(),
+              spec!.layers.map((layer) => layer.name),
+            );
+            const layer = create(TissueLayerSchema, { name, kind: Number(value) });
+            const inner = spec!.layers.findIndex(({ kind }) => kind > Number(value));
+            spec!.layers.splice(inner < 0 ? spec!.layers.length : inner, 0, layer);
+          });
+        }}
+      />
     </Section>
   );
 }
@@ -84,12 +152,21 @@ function Layers() {
 function Resolution() {
   const { nXi, nEta } = plan.value.model ?? {};
   const now = resolutions.find((option) => option.nXi === nXi && option.nEta === nEta)?.key ?? "own";
-  const options = [...resolutions.map(({ key, label }) => ({ value: key, label })), ...(now === "own" ? [{ value: "own", label: `${nXi} × ${nEta} elements` }] : [])];
+  const options = [
+    ...resolutions.map(({ key, label }) => ({ value: key, label })),
+    ...(now === "own" ? [{ value: "own", label: `${nXi} × ${nEta} elements` }] : []),
+  ];
   return (
-    <SelectField label="Resolution" value={now} options={options} field="model.n_xi" onChange={(key) => {
-      const option = resolutions.find((candidate) => candidate.key === key);
-      if (option) editPlan((next) => setResolution(next, option.nXi, option.nEta));
-    }} />
+    <SelectField
+      label="Resolution"
+      value={now}
+      options={options}
+      field="model.n_xi"
+      onChange={(key) => {
+        const option = resolutions.find((candidate) => candidate.key === key);
+        if (option) editPlan((next) => setResolution(next, option.nXi, option.nEta));
+      }}
+    />
   );
 }
 
@@ -99,14 +176,26 @@ function Built() {
   return (
     <Section title="Model">
       <p class="quiet">
-        {report.hexahedra.toLocaleString("en")} elements, {report.areaCm2.toFixed(0)} cm², {report.tissueVolumeMl.toFixed(0)} mL of tissue
+        {report.hexahedra.toLocaleString("en")} elements, {report.areaCm2.toFixed(0)} cm²,{" "}
+        {report.tissueVolumeMl.toFixed(0)} mL of tissue
       </p>
       <CheckField label="See the layers" value={showLayers.value} onChange={(value) => (showLayers.value = value)} />
-      {showLayers.value && report.layers.map(({ name, meanThicknessMm }, index) => (
-        <CheckField key={name} label={`${readable(name)}, ${meanThicknessMm.toFixed(1)} mm`} value={layerShown.value[index] ?? true}
-          onChange={(value) => (layerShown.value = report.layers.map((_, k) => (k === index ? value : layerShown.value[k] ?? true)))} />
+      {showLayers.value &&
+        report.layers.map(({ name, meanThicknessMm }, index) => (
+          <CheckField
+            key={name}
+            label={`${readable(name)}, ${meanThicknessMm.toFixed(1)} mm`}
+            value={layerShown.value[index] ?? true}
+            onChange={(value) =>
+              (layerShown.value = report.layers.map((_, k) => (k === index ? value : (layerShown.value[k] ?? true))))
+            }
+          />
+        ))}
+      {report.scanRemarks.map((remark) => (
+        <p class="hint" key={remark}>
+          {remark}
+        </p>
       ))}
-      {report.scanRemarks.map((remark) => <p class="hint" key={remark}>{remark}</p>)}
     </Section>
   );
 }
@@ -119,7 +208,12 @@ export function TissuePanel() {
       <Layers />
       <Section title="Elements">
         <Resolution />
-        <button type="button" class="button primary wide" disabled={busy.value !== undefined || modelIsCurrent.value || (isScan && !scan.value)} onClick={() => void build()}>
+        <button
+          type="button"
+          class="button primary wide"
+          disabled={busy.value !== undefined || modelIsCurrent.value || (isScan && !scan.value)}
+          onClick={() => void build()}
+        >
           {modelIsCurrent.value ? "Model is built" : model.value ? "Build again" : "Build the model"}
         </button>
       </Section>

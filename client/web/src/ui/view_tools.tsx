@@ -32,21 +32,49 @@ export function lookAtRegion(): void {
 
 export function ViewTools() {
   const colours: { value: Quantity | "none"; label: string }[] = [
-    { value: "displacement", label: "Displacement" }, { value: "pressure", label: "Pressure" }, { value: "thickness", label: "Fat" },
-    ...(distance.value ? [{ value: "distance" as const, label: "Target" }] : []), { value: "none", label: "Skin" },
+    { value: "displacement", label: "Displacement" },
+    { value: "pressure", label: "Pressure" },
+    { value: "thickness", label: "Fat" },
+    ...(distance.value ? [{ value: "distance" as const, label: "Target" }] : []),
+    { value: "none", label: "Skin" },
   ];
   return (
     <div class="view-tools">
       <div class="row">
-        <button type="button" class="button small" onClick={() => lookAtFace("right")}>Right</button>
-        <button type="button" class="button small" onClick={() => lookAtFace("front")}>Front</button>
-        <button type="button" class="button small" onClick={() => lookAtFace("left")}>Left</button>
-        {chart.value && <button type="button" class="button small" onClick={lookAtRegion}>Region</button>}
+        <button type="button" class="button small" onClick={() => lookAtFace("right")}>
+          Right
+        </button>
+        <button type="button" class="button small" onClick={() => lookAtFace("front")}>
+          Front
+        </button>
+        <button type="button" class="button small" onClick={() => lookAtFace("left")}>
+          Left
+        </button>
+        {chart.value && (
+          <button type="button" class="button small" onClick={lookAtRegion}>
+            Region
+          </button>
+        )}
       </div>
-      {hasFrame.value && step.value === "run" && <Segmented label="Colour by" value={quantity.value} options={colours} onChange={(value) => (quantity.value = value)} />}
+      {hasFrame.value && step.value === "run" && (
+        <Segmented
+          label="Colour by"
+          value={quantity.value}
+          options={colours}
+          onChange={(value) => (quantity.value = value)}
+        />
+      )}
       {hasResult.value && step.value === "run" && (
-        <Segmented<Compare> label="Compare" value={compare.value} onChange={(value) => (compare.value = value)}
-          options={[{ value: "after", label: "After" }, { value: "side", label: "Side by side" }, { value: "slider", label: "Slider" }]} />
+        <Segmented<Compare>
+          label="Compare"
+          value={compare.value}
+          onChange={(value) => (compare.value = value)}
+          options={[
+            { value: "after", label: "After" },
+            { value: "side", label: "Side by side" },
+            { value: "slider", label: "Slider" },
+          ]}
+        />
       )}
     </div>
   );

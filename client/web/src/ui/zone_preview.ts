@@ -41,7 +41,8 @@ async function ask(text: string): Promise<void> {
     zonePreview.value = zones;
     violations.value = [];
   } catch (error) {
-    if (text === shown && !toProblem(error).lost) violations.value = toPlanFields(toProblem(error).violations, "simulation");
+    if (text === shown && !toProblem(error).lost)
+      violations.value = toPlanFields(toProblem(error).violations, "simulation");
   } finally {
     // A check that cannot be taken away now goes with the daemon's own clearing up.
     if (name) await simulations.deleteSimulation({ name }).catch(() => undefined);
@@ -61,7 +62,8 @@ export function bindZonePreview(): () => void {
       return;
     }
     const { simulation } = plan.value;
-    if (step.value !== "fat" || busy.value || !simulation || !simulation.films.some(({ zones }) => zones.length > 0)) return;
+    if (step.value !== "fat" || busy.value || !simulation || !simulation.films.some(({ zones }) => zones.length > 0))
+      return;
     const text = toJsonString(SimulationSpecSchema, simulation);
     if (text === shown) return;
     timer = setTimeout(() => {

@@ -26,13 +26,20 @@ afterEach(async ({ task }) => {
 });
 
 const button = (name: string | RegExp) => page.getByRole("button", { name, exact: typeof name === "string" });
-const goTo = (step: string) => page.getByRole("navigation", { name: "Steps of the plan" }).getByRole("button", { name: step }).click();
-const figure = async (label: string): Promise<number> => parseFloat((await page.locator(`[data-figure="${label}"]`).textContent())!);
+const goTo = (step: string) =>
+  page.getByRole("navigation", { name: "Steps of the plan" }).getByRole("button", { name: step }).click();
+const figure = async (label: string): Promise<number> =>
+  parseFloat((await page.locator(`[data-figure="${label}"]`).textContent())!);
 
 /** The middle of the picture, without what lies over it. */
 async function middle(): Promise<Box> {
   const box = (await page.locator(".stage").boundingBox())!;
-  return { x: Math.round(box.x + box.width * 0.15), y: Math.round(box.y + 110), width: Math.round(box.width * 0.62), height: Math.round(box.height - 220) };
+  return {
+    x: Math.round(box.x + box.width * 0.15),
+    y: Math.round(box.y + 110),
+    width: Math.round(box.width * 0.62),
+    height: Math.round(box.height - 220),
+  };
 }
 
 /** Where the picture has stopped changing. */
@@ -64,7 +71,12 @@ describe("a plan", () => {
     await page.mouse.click(x + 0.53 * width, y + 0.5 * height);
     await page.getByText("12 set").waitFor();
     const after = await still("1-landmark-clicked");
-    const around = { x: Math.round(x + 0.53 * width - 15), y: Math.round(y + 0.5 * height - 15), width: 30, height: 30 };
+    const around = {
+      x: Math.round(x + 0.53 * width - 15),
+      y: Math.round(y + 0.5 * height - 15),
+      width: 30,
+      height: 30,
+    };
     expect(await reader.differ(before, after, around), "a ball where the click was").toBeGreaterThan(30);
     await button("Remove Alare, left").click();
     await page.getByText("11 set").waitFor();
@@ -96,7 +108,8 @@ describe("a plan", () => {
     await page.waitForTimeout(1500);
     const shown = await still("3-zones");
     const box = await middle();
-    for (const k of [0, 1]) expect(await reader.ofHue(shown, box, zoneColours[k]), `zone ${k + 1}`).toBeGreaterThan(8000);
+    for (const k of [0, 1])
+      expect(await reader.ofHue(shown, box, zoneColours[k]), `zone ${k + 1}`).toBeGreaterThan(8000);
     expect(await seriousProblems(page)).toEqual([]);
   });
 
@@ -140,7 +153,11 @@ describe("a run", () => {
     await page.locator("body").click({ position: { x: 700, y: 24 } });
     await page.keyboard.press("Space");
     await page.locator(".state-running").waitFor();
-    await page.waitForFunction(() => parseFloat(document.querySelector('[data-figure="Injected"]')?.textContent ?? "0") > 2, undefined, { timeout: 30_000 });
+    await page.waitForFunction(
+      () => parseFloat(document.querySelector('[data-figure="Injected"]')?.textContent ?? "0") > 2,
+      undefined,
+      { timeout: 30_000 },
+    );
     const during = await picture(page, "4-running");
     expect(await reader.differ(before, during, box), "the cheek moves").toBeGreaterThan(8000);
     expect(await figure("Skin rises")).toBeGreaterThan(1);
@@ -155,7 +172,11 @@ describe("a run", () => {
     await more.getByLabel("Volume").press("Tab");
     await button("Inject").click();
     await button(/Resume/).click();
-    await page.waitForFunction((least) => parseFloat(document.querySelector('[data-figure="Injected"]')?.textContent ?? "0") > least, injected + 0.2, { timeout: 30_000 });
+    await page.waitForFunction(
+      (least) => parseFloat(document.querySelector('[data-figure="Injected"]')?.textContent ?? "0") > least,
+      injected + 0.2,
+      { timeout: 30_000 },
+    );
   });
 
   it("has the daemon's refusal beside the field", async () => {
@@ -170,14 +191,21 @@ describe("a run", () => {
   });
 
   it("shows pressure in its bands, and the probe says what is under the cursor", async () => {
-    await page.waitForFunction(() => parseFloat(document.querySelector('[data-figure="Injected"]')?.textContent ?? "0") >= 4.99, undefined, { timeout: 30_000 });
+    await page.waitForFunction(
+      () => parseFloat(document.querySelector('[data-figure="Injected"]')?.textContent ?? "0") >= 4.99,
+      undefined,
+      { timeout: 30_000 },
+    );
     await button(/Stop/).click();
     await page.locator(".state-stopped").waitFor();
     await page.getByRole("radio", { name: "Pressure" }).click();
     const shown = await still("4-pressure");
     const box = await middle();
     const counts = await Promise.all(pressureBands.map(({ colour }) => reader.ofHue(shown, box, colour)));
-    expect(counts.reduce((sum, n) => sum + n, 0), "bands").toBeGreaterThan(10_000);
+    expect(
+      counts.reduce((sum, n) => sum + n, 0),
+      "bands",
+    ).toBeGreaterThan(10_000);
     const { x, y, width, height } = (await page.locator(".view.after").boundingBox())!;
     await page.mouse.move(x + 0.57 * width, y + 0.4 * height);
     await page.mouse.move(x + 0.58 * width, y + 0.41 * height);
@@ -205,7 +233,10 @@ describe("a run", () => {
     await page.getByRole("radio", { name: "Slider" }).click();
     const half = await still("4-slider");
     await page.getByLabel("Share of the picture before").fill("0");
-    expect(await reader.differ(half, await still("4-slider-after"), await middle()), "the slider uncovers").toBeGreaterThan(2000);
+    expect(
+      await reader.differ(half, await still("4-slider-after"), await middle()),
+      "the slider uncovers",
+    ).toBeGreaterThan(2000);
     await page.getByRole("radio", { name: "After" }).click();
   });
 
@@ -219,7 +250,11 @@ describe("a run", () => {
   it("fits a tablet", async () => {
     await page.setViewportSize({ width: 1024, height: 768 });
     await still("4-tablet");
-    const overflow = await page.evaluate(() => [...document.querySelectorAll<HTMLElement>(".panel-body, .figures, .top")].filter((one) => one.scrollWidth > one.clientWidth + 1).map((one) => one.className));
+    const overflow = await page.evaluate(() =>
+      [...document.querySelectorAll<HTMLElement>(".panel-body, .figures, .top")]
+        .filter((one) => one.scrollWidth > one.clientWidth + 1)
+        .map((one) => one.className),
+    );
     expect(overflow).toEqual([]);
     await page.setViewportSize({ width: 1440, height: 900 });
   });
@@ -237,12 +272,20 @@ describe("what is taken home", () => {
     expect(JSON.parse(readFileSync(join(out, "summary.json"), "utf8")).state).toBe("SETTLED");
   });
   it("is figures, a surface and a picture", async () => {
-    const csv = readFileSync(await take("CSV"), "utf8").trim().split("\n");
+    const csv = readFileSync(await take("CSV"), "utf8")
+      .trim()
+      .split("\n");
     expect(csv[0]).toMatch(/^step,time_s,step_ms,injected_ml/);
     expect(csv.length).toBeGreaterThan(100);
-    const vertices = readFileSync(await take("Mesh"), "utf8").split("\n").filter((line) => line.startsWith("v "));
+    const vertices = readFileSync(await take("Mesh"), "utf8")
+      .split("\n")
+      .filter((line) => line.startsWith("v "));
     expect(vertices).toHaveLength(9991);
-    expect(readFileSync(await take("Picture")).subarray(1, 4).toString()).toBe("PNG");
+    expect(
+      readFileSync(await take("Picture"))
+        .subarray(1, 4)
+        .toString(),
+    ).toBe("PNG");
   });
   it("is opened again from its folder", async () => {
     await button("Close").click();

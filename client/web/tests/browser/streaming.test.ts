@@ -37,10 +37,36 @@ afterEach(async ({ task }) => {
   if (task.result?.state === "fail") await picture(page, "failed-streaming");
 });
 
-const shownTime = (): Promise<number> => page.evaluate(() => parseFloat(document.querySelector(".timeline output")?.textContent ?? "0"));
-const pictures = (): Promise<number> => page.evaluate(() => Number(document.querySelector<HTMLElement>(".stage")?.dataset["pictures"] ?? 0));
+const shownTime = (): Promise<number> =>
+  page.evaluate(() => parseFloat(document.querySelector(".timeline output")?.textContent ?? "0"));
+const pictures = (): Promise<number> =>
+  page.evaluate(() => Number(document.querySelector<HTMLElement>(".stage")?.dataset["pictures"] ?? 0));
 const laterThan = (time: number): Promise<unknown> =>
-  page.waitForFunction((least) => parseFloat(document.querySelector(".timeline output")?.textContent ?? "0") > least, time, { timeout: 40_000 });
+  page.waitForFunction(
+    (least) => parseFloat(document.querySelector(".timeline output")?.textContent ?? "0") > least,
+    time,
+    { timeout: 40_000 },
+  );
+
+describe("the dashboard", () => {
+  it("shows a run as it goes on", async () => {
+    const wall = await system.newPage(errors, 1920, 1080);
+    await wall.goto(`${system.address}#dashboard`);
+    const card = wall.getByRole("article", { name: "jaw-angle" });
+    await card.getByText("Running").waitFor();
+    await wall.waitForFunction(() => /[1-9]\d* steps\/s/.test(document.querySelector("article")?.textContent ?? ""));
+    expect(await card.textContent()).toMatch(/Viewers[1-9]/);
+    const face = card.getByAltText("The face as it is now");
+    const first = await face.getAttribute("src", { timeout: 20_000 });
+    await wall.waitForFunction(
+      (before) => document.querySelector("article img")?.getAttribute("src") !== before,
+      first,
+      { timeout: 20_000 },
+    );
+    await picture(wall, "6-wall");
+    await wall.context().close();
+  });
+});
 
 describe("the daemon's sudden end", () => {
   it("is survived without a reload", async () => {
@@ -69,13 +95,17 @@ describe("the daemon's sudden end", () => {
 /** What drawing took of the processor, in the page and in the process that stands in for a graphics card, seconds. */
 async function cpuOf(browser: CDPSession): Promise<number> {
   const { processInfo } = await browser.send("SystemInfo.getProcessInfo");
-  return processInfo.filter(({ type }) => type === "renderer" || type === "GPU").reduce((sum, { cpuTime }) => sum + cpuTime, 0);
+  return processInfo
+    .filter(({ type }) => type === "renderer" || type === "GPU")
+    .reduce((sum, { cpuTime }) => sum + cpuTime, 0);
 }
 
 /** Of the process that holds the page: what it has for itself, kB. */
 async function memoryOf(browser: CDPSession): Promise<number> {
   const { processInfo } = await browser.send("SystemInfo.getProcessInfo");
-  const of = processInfo.filter(({ type }) => type === "renderer").map(({ id }) => Number(/RssAnon:\s+(\d+)/.exec(readFileSync(`/proc/${id}/status`, "utf8"))?.[1] ?? 0));
+  const of = processInfo
+    .filter(({ type }) => type === "renderer")
+    .map(({ id }) => Number(/RssAnon:\s+(\d+)/.exec(readFileSync(`/proc/${id}/status`, "utf8"))?.[1] ?? 0));
   return Math.max(...of);
 }
 
@@ -92,8 +122,12 @@ describe("a minute of streaming", () => {
     const rate = (1000 * shown) / (Date.now() - began);
     const cpuMs = (1000 * ((await cpuOf(browser)) - cpuBefore)) / shown;
     const third = Math.floor(kilobytes.length / 3);
-    const [early, late] = [kilobytes.slice(third, 2 * third), kilobytes.slice(2 * third)].map((part) => Math.max(...part) / 1024);
-    console.log(`streaming: ${rate.toFixed(1)} pictures a second of the paper-size patient, ${cpuMs.toFixed(0)} ms of processor each without a graphics card; page ${early.toFixed(0)} MB, then ${late.toFixed(0)} MB`);
+    const [early, late] = [kilobytes.slice(third, 2 * third), kilobytes.slice(2 * third)].map(
+      (part) => Math.max(...part) / 1024,
+    );
+    console.log(
+      `streaming: ${rate.toFixed(1)} pictures a second of the paper-size patient, ${cpuMs.toFixed(0)} ms of processor each without a graphics card; page ${early.toFixed(0)} MB, then ${late.toFixed(0)} MB`,
+    );
     await picture(page, "8-streaming");
     // The ring of frames goes up and down by half its 96 MB, the collector by as much.
     expect(late - early, "MB more in the last third than in the one before").toBeLessThan(130);

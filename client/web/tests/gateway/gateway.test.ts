@@ -31,12 +31,26 @@ beforeAll(async () => {
 afterAll(() => system.stop());
 
 const square = create(ModelSpecSchema, {
-  geometry: { case: "square", value: { lengthXiMm: 40, lengthEtaMm: 40 } }, nXi: 24, nEta: 24,
-  layers: [{ name: "skin", thicknessMm: { kind: { case: "constant", value: 2 } }, youngsModulusKpa: 100, poissonRatio: 0.45, densityKgM3: 1100 }],
-  rim: { kind: 1 }, base: { kind: 1 },
+  geometry: { case: "square", value: { lengthXiMm: 40, lengthEtaMm: 40 } },
+  nXi: 24,
+  nEta: 24,
+  layers: [
+    {
+      name: "skin",
+      thicknessMm: { kind: { case: "constant", value: 2 } },
+      youngsModulusKpa: 100,
+      poissonRatio: 0.45,
+      densityKgM3: 1100,
+    },
+  ],
+  rim: { kind: 1 },
+  base: { kind: 1 },
 });
 const film = {
-  name: "film", belowLayer: "skin", nXi: 12, nEta: 12,
+  name: "film",
+  belowLayer: "skin",
+  nXi: 12,
+  nEta: 12,
   zones: [{ name: "all", shape: { case: "box" as const, value: { xiMin: 0, xiMax: 1, etaMin: 0, etaMax: 1 } } }],
 };
 
@@ -48,17 +62,24 @@ async function startEndless(): Promise<string> {
   while (!operation.done) operation = await operations.waitOperation({ name: operation.name });
   const { models } = await patients.listModels({ parent });
   const spec = create(SimulationSpecSchema, {
-    model: models[0].name, films: [film], injections: [{ zone: "all", volumeMl: 0.4, rateMlPerS: 0.1 }],
+    model: models[0].name,
+    films: [film],
+    injections: [{ zone: "all", volumeMl: 0.4, rateMlPerS: 0.1 }],
     time: { stepMs: 10, endS: 100_000, settleSkinSpeedMmPerS: 0 },
   });
   return (await simulations.createSimulation({ spec, start: true })).name;
 }
 
-function fetchText(path: string, headers: Record<string, string> = {}): Promise<{ status: number; text: string; headers: IncomingMessage["headers"] }> {
+function fetchText(
+  path: string,
+  headers: Record<string, string> = {},
+): Promise<{ status: number; text: string; headers: IncomingMessage["headers"] }> {
   return new Promise((resolve, reject) => {
     const sent = request(new URL(path, system.address), { headers }, (response) => {
       let text = "";
-      response.on("data", (chunk: Buffer) => (text += chunk.toString())).on("end", () => resolve({ status: response.statusCode!, text, headers: response.headers }));
+      response
+        .on("data", (chunk: Buffer) => (text += chunk.toString()))
+        .on("end", () => resolve({ status: response.statusCode!, text, headers: response.headers }));
     });
     sent.on("error", reject).end();
   });
@@ -77,13 +98,19 @@ describe("the gateway", () => {
     expect((await fetchText("/", { host: "clinic.example:80" })).status).toBe(421);
   });
   it("passes violations on as the daemon gives them", async () => {
-    const error = await patients.createPatient({ patientId: "Not An Id" }).then(() => undefined, (cause) => ConnectError.from(cause));
+    const error = await patients.createPatient({ patientId: "Not An Id" }).then(
+      () => undefined,
+      (cause) => ConnectError.from(cause),
+    );
     expect(error?.code).toBe(Code.InvalidArgument);
     expect(error?.findDetails(BadRequestSchema)[0].fieldViolations[0].field).toBe("patient_id");
   });
   it("passes request ids there and back", async () => {
     let answered = "";
-    await patients.listPatients({}, { headers: { "x-request-id": "seen-17" }, onHeader: (headers) => (answered = headers.get("x-request-id") ?? "") });
+    await patients.listPatients(
+      {},
+      { headers: { "x-request-id": "seen-17" }, onHeader: (headers) => (answered = headers.get("x-request-id") ?? "") },
+    );
     expect(answered).toBe("seen-17");
   });
   it("takes a scan a chunk a call, as a browser sends it", async () => {
@@ -91,13 +118,24 @@ describe("the gateway", () => {
     const bytes = readFileSync(new URL("../../../examples/faces/half_face.obj", import.meta.url));
     const sha256 = createHash("sha256").update(bytes).digest("hex");
     const scan = await patients.createScan({ parent, format: ScanFormat.OBJ, sizeBytes: BigInt(bytes.length), sha256 });
-    const asUnary = { ...PatientService.method.uploadScan, methodKind: "unary" } as unknown as DescMethodUnary<typeof UploadScanRequestSchema, typeof ScanSchema>;
+    const asUnary = { ...PatientService.method.uploadScan, methodKind: "unary" } as unknown as DescMethodUnary<
+      typeof UploadScanRequestSchema,
+      typeof ScanSchema
+    >;
     const half = bytes.length >> 1;
-    const send = (offset: number, data: Uint8Array) => transport.unary(asUnary, undefined, undefined, undefined, create(UploadScanRequestSchema, { name: scan.name, offset: BigInt(offset), data }));
+    const send = (offset: number, data: Uint8Array) =>
+      transport.unary(
+        asUnary,
+        undefined,
+        undefined,
+        undefined,
+        create(UploadScanRequestSchema, { name: scan.name, offset: BigInt(offset), data }),
+      );
     expect((await send(0, bytes.subarray(0, half))).message.receivedBytes).toBe(BigInt(half));
     expect((await send(half, bytes.subarray(half))).message.complete).toBe(true);
     let points = 0n;
-    for await (const slice of patients.downloadScanMesh({ name: scan.name })) for (const { name, shape } of slice.arrays) if (name === "scan.points") points = shape[0];
+    for await (const slice of patients.downloadScanMesh({ name: scan.name }))
+      for (const { name, shape } of slice.arrays) if (name === "scan.points") points = shape[0];
     expect(points).toBe(9991n);
   });
 });
@@ -108,9 +146,16 @@ function residentKb(pid: number): number {
 
 /** Asks for every frame's everything and never reads the answer. */
 function stall(simulation: string): ReturnType<typeof request> {
-  const message = toBinary(WatchRequestSchema, create(WatchRequestSchema, { simulation, meshes: ["skin", "film/film", "tissue"], maxRateHz: 1000 }));
+  const message = toBinary(
+    WatchRequestSchema,
+    create(WatchRequestSchema, { simulation, meshes: ["skin", "film/film", "tissue"], maxRateHz: 1000 }),
+  );
   const body = Buffer.concat([Buffer.from([0, 0, 0, 0, message.length]), message]);
-  const sent = request(new URL("lipofill.v1.FrameService/Watch", system.address), { method: "POST", headers: { "content-type": "application/grpc-web+proto", "content-length": body.length } }, (response) => response.pause());
+  const sent = request(
+    new URL("lipofill.v1.FrameService/Watch", system.address),
+    { method: "POST", headers: { "content-type": "application/grpc-web+proto", "content-length": body.length } },
+    (response) => response.pause(),
+  );
   sent.on("error", () => undefined).end(body);
   return sent;
 }
@@ -127,7 +172,8 @@ describe("a slow browser", () => {
     expect(after - before, "the solver goes on").toBeGreaterThan(50n);
     expect(residentKb(system.gateway!.pid!) - settled, "kB").toBeLessThan(20_000);
     let frames = 0;
-    for await (const { message } of createClient(FrameService, transport).watch({ simulation })) if (message.case === "frame" && message.value.last && ++frames === 5) break;
+    for await (const { message } of createClient(FrameService, transport).watch({ simulation }))
+      if (message.case === "frame" && message.value.last && ++frames === 5) break;
     expect(frames, "others are served").toBe(5);
     stalled.forEach((sent) => sent.destroy());
     await simulations.stopSimulation({ name: simulation });
@@ -138,7 +184,10 @@ describe("the daemon's end", () => {
   it("is told in words, and the gateway finds the next one", async () => {
     const { name } = await patients.createPatient({ patientId: "lasting" });
     await system.killDaemon();
-    const error = await patients.getPatient({ name }).then(() => undefined, (cause) => ConnectError.from(cause));
+    const error = await patients.getPatient({ name }).then(
+      () => undefined,
+      (cause) => ConnectError.from(cause),
+    );
     expect(error?.code).toBe(Code.Unavailable);
     expect(error?.rawMessage).toMatch(/daemon cannot be reached/);
     await system.startDaemon();

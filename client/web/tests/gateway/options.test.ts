@@ -27,7 +27,8 @@ describe("the gateway's options", () => {
     expect(parseOptions(["--page", page], { LIPOFILL_SERVER: "unix:/run/x" })).toMatchObject({ daemon: "unix:/run/x" });
   });
   it("are all in the help", () => {
-    for (const option of ["listen", "daemon", "daemon-ca", "page", "samples", "port-file", "insecure-listen-anywhere"]) expect(help).toContain(`--${option}`);
+    for (const option of ["listen", "daemon", "daemon-ca", "page", "samples", "port-file", "insecure-listen-anywhere"])
+      expect(help).toContain(`--${option}`);
     expect(parse("--help")).toBe("help");
   });
 });
@@ -35,6 +36,7 @@ describe("the gateway's options", () => {
 describe("a file of the page", () => {
   it("is found below its folder and nowhere else", () => {
     expect(locate("/srv/page", "/assets/a.js")).toBe("/srv/page/assets/a.js");
-    for (const path of ["/../secret", "/%2e%2e/secret", "/..%2fsecret", "/a/../../secret", "/%00", "/%zz"]) expect(locate("/srv/page", path)).toBeUndefined();
+    for (const path of ["/../secret", "/%2e%2e/secret", "/..%2fsecret", "/a/../../secret", "/%00", "/%zz"])
+      expect(locate("/srv/page", path)).toBeUndefined();
   });
 });

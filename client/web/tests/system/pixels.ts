@@ -37,7 +37,8 @@ const inBrowser = (): Pixels => {
     async differ(one, other, box, threshold) {
       const [a, b] = [await read(one, box), await read(other, box)];
       let found = 0;
-      for (let k = 0; k < a.length; k += 4) if ([0, 1, 2].some((i) => Math.abs(a[k + i] - b[k + i]) > threshold)) ++found;
+      for (let k = 0; k < a.length; k += 4)
+        if ([0, 1, 2].some((i) => Math.abs(a[k + i] - b[k + i]) > threshold)) ++found;
       return found;
     },
   };
@@ -57,12 +58,18 @@ export class PictureReader {
 
   /** Pixels whose hue is that of `colour`, however the scene's light makes it brighter or darker. */
   ofHue(image: Buffer, box: Box, colour: number[]): Promise<number> {
-    return this.page.evaluate(([data, where, of]) => (window as unknown as WithPixels).pixels.ofHue(data, where, of), [image.toString("base64"), box, colour] as [string, Box, number[]]);
+    return this.page.evaluate(([data, where, of]) => (window as unknown as WithPixels).pixels.ofHue(data, where, of), [
+      image.toString("base64"),
+      box,
+      colour,
+    ] as [string, Box, number[]]);
   }
 
   /** Pixels that two pictures do not share. */
   differ(one: Buffer, other: Buffer, box: Box, threshold = 24): Promise<number> {
-    return this.page.evaluate(([a, b, where, least]) => (window as unknown as WithPixels).pixels.differ(a, b, where, least),
-      [one.toString("base64"), other.toString("base64"), box, threshold] as [string, string, Box, number]);
+    return this.page.evaluate(
+      ([a, b, where, least]) => (window as unknown as WithPixels).pixels.differ(a, b, where, least),
+      [one.toString("base64"), other.toString("base64"), box, threshold] as [string, string, Box, number],
+    );
   }
 }

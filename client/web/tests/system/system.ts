@@ -37,7 +37,20 @@ export class System {
   async startDaemon(): Promise<void> {
     const portFile = join(this.folder, "daemon-port");
     rmSync(portFile, { force: true });
-    this.daemon = spawn(join(bin, "lipofilld"), ["--listen", `127.0.0.1:${this.daemonPort}`, "--log-level", "warning", "--data", join(this.folder, "data"), "--port-file", portFile], { stdio: ["ignore", "ignore", "inherit"] });
+    this.daemon = spawn(
+      join(bin, "lipofilld"),
+      [
+        "--listen",
+        `127.0.0.1:${this.daemonPort}`,
+        "--log-level",
+        "warning",
+        "--data",
+        join(this.folder, "data"),
+        "--port-file",
+        portFile,
+      ],
+      { stdio: ["ignore", "ignore", "inherit"] },
+    );
     this.daemonPort = await until("the daemon's port", () => portIn(portFile), 30);
   }
 
@@ -50,24 +63,49 @@ export class System {
   async startGateway(port = "0"): Promise<void> {
     const portFile = join(this.folder, "gateway-port");
     rmSync(portFile, { force: true });
-    this.gateway = spawn(process.execPath, [join(built, "gateway.mjs"), "--listen", `127.0.0.1:${port}`, "--daemon", `127.0.0.1:${this.daemonPort}`, "--port-file", portFile], { stdio: ["ignore", "ignore", "inherit"] });
+    this.gateway = spawn(
+      process.execPath,
+      [
+        join(built, "gateway.mjs"),
+        "--listen",
+        `127.0.0.1:${port}`,
+        "--daemon",
+        `127.0.0.1:${this.daemonPort}`,
+        "--port-file",
+        portFile,
+      ],
+      { stdio: ["ignore", "ignore", "inherit"] },
+    );
     this.address = `http://127.0.0.1:${await until("the gateway's port", () => portIn(portFile))}/`;
   }
 
   async startBrowser(): Promise<void> {
     this.browser = await chromium.launch({
       executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
-      args: ["--no-sandbox", "--disable-dev-shm-usage", "--ignore-gpu-blocklist", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-gpu-rasterization", "--enable-precise-memory-info", "--js-flags=--expose-gc"],
+      args: [
+        "--no-sandbox",
+        "--disable-dev-shm-usage",
+        "--ignore-gpu-blocklist",
+        "--use-gl=angle",
+        "--use-angle=swiftshader",
+        "--enable-unsafe-swiftshader",
+        "--disable-gpu-rasterization",
+        "--enable-precise-memory-info",
+        "--js-flags=--expose-gc",
+      ],
     });
   }
 
   /** A page that fails the test on any error it has not caught, and on the console. */
   async newPage(errors: string[], width = 1440, height = 900): Promise<Page> {
-    const page = await (await this.browser!.newContext({ viewport: { width, height }, acceptDownloads: true })).newPage();
+    const page = await (
+      await this.browser!.newContext({ viewport: { width, height }, acceptDownloads: true })
+    ).newPage();
     page.on("pageerror", (error) => errors.push(String(error)));
     page.on("console", (message) => {
       // What a lost connection says in the console is no mistake of the page.
-      if (message.type() === "error" && !/net::ERR|Failed to load resource/.test(message.text())) errors.push(message.text());
+      if (message.type() === "error" && !/net::ERR|Failed to load resource/.test(message.text()))
+        errors.push(message.text());
     });
     return page;
   }
@@ -83,7 +121,11 @@ export class System {
     await this.browser?.close();
     this.gateway?.kill("SIGTERM");
     this.daemon?.kill("SIGTERM");
-    await until("the daemon's end", () => (this.daemon?.exitCode ?? this.daemon?.signalCode ?? undefined) as unknown, 40).catch(() => this.daemon?.kill("SIGKILL"));
+    await until(
+      "the daemon's end",
+      () => (this.daemon?.exitCode ?? this.daemon?.signalCode ?? undefined) as unknown,
+      40,
+    ).catch(() => this.daemon?.kill("SIGKILL"));
     rmSync(this.folder, { recursive: true, force: true });
   }
 }

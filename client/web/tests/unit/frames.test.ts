@@ -6,7 +6,12 @@ import { meshesOf, trianglesOf } from "../../src/api/meshes";
 import type { Frame } from "../../src/api/watch";
 import { FrameStore } from "../../src/run/frame_store";
 
-function wire(values: Float32Array | Uint16Array | Uint32Array, type: ArrayType, shape: number[], offset = 0): WireArray {
+function wire(
+  values: Float32Array | Uint16Array | Uint32Array,
+  type: ArrayType,
+  shape: number[],
+  offset = 0,
+): WireArray {
   const buffer = new Uint8Array(values.byteLength + offset);
   buffer.set(new Uint8Array(values.buffer), offset);
   return { name: "skin.pressure", unit: "Pa", type, shape, bytes: buffer.subarray(offset), boxMin: [], boxMax: [] };
@@ -61,18 +66,34 @@ describe("meshes", () => {
   const points = { ...wire(new Float32Array(12), ArrayType.FLOAT32, [4, 3]), name: "skin.points" };
   it("of quadrilaterals are drawn as triangles", () => {
     const cells = { ...wire(Uint32Array.from([0, 1, 2, 3]), ArrayType.UINT32, [1, 4]), name: "skin.cells" };
-    const mesh = meshesOf(new Map([[points.name, points], [cells.name, cells]])).get("skin")!;
+    const mesh = meshesOf(
+      new Map([
+        [points.name, points],
+        [cells.name, cells],
+      ]),
+    ).get("skin")!;
     expect([...trianglesOf(mesh)]).toEqual([0, 1, 2, 0, 2, 3]);
   });
   it("with a cell beyond their points are refused", () => {
     const cells = { ...wire(Uint32Array.from([0, 1, 4]), ArrayType.UINT32, [1, 3]), name: "skin.cells" };
-    expect(() => meshesOf(new Map([[points.name, points], [cells.name, cells]]))).toThrow(/has not/);
+    expect(() =>
+      meshesOf(
+        new Map([
+          [points.name, points],
+          [cells.name, cells],
+        ]),
+      ),
+    ).toThrow(/has not/);
   });
 });
 
 describe("the frames of a run", () => {
   const frame = (step: number, bytes = 1000): Frame => ({
-    epoch: 1n, sequence: BigInt(step), timeS: step * 0.01, preview: false, end: false,
+    epoch: 1n,
+    sequence: BigInt(step),
+    timeS: step * 0.01,
+    preview: false,
+    end: false,
     fields: new Map([["scan.displacement", wire(new Float32Array(bytes / 4), ArrayType.FLOAT32, [bytes / 4])]]),
   });
   it("stay within their bound, over the whole time, with the newest", () => {

@@ -12,7 +12,9 @@ const examples = new URL("../../../examples/", import.meta.url);
 const landmarkText = readFileSync(new URL("faces/half_face.landmarks.json", examples), "utf8");
 
 describe("a plan file", () => {
-  for (const file of readdirSync(new URL("plans/", examples)).filter((name) => name.endsWith(".json") && !name.includes("landmarks"))) {
+  for (const file of readdirSync(new URL("plans/", examples)).filter(
+    (name) => name.endsWith(".json") && !name.includes("landmarks"),
+  )) {
     it(`${file} is read, and written as it was`, () => {
       const plan = parsePlan(readFileSync(new URL(`plans/${file}`, examples), "utf8"));
       const again = parsePlan(writePlan(plan, "face.obj", ScanUnit.MILLIMETRE));
@@ -40,7 +42,9 @@ describe("landmarks", () => {
     expect(again.axes).toEqual(axes);
   });
   it("are refused when they are no points", () => {
-    expect(() => parseLandmarks('{"landmarks": {"nasion": [1, "2", 3]}}', ScanUnit.MILLIMETRE)).toThrow(/landmarks.nasion/);
+    expect(() => parseLandmarks('{"landmarks": {"nasion": [1, "2", 3]}}', ScanUnit.MILLIMETRE)).toThrow(
+      /landmarks.nasion/,
+    );
     expect(() => parseLandmarks("{}", ScanUnit.MILLIMETRE)).toThrow(/no object/);
   });
   it("place a corner by weights and offsets along the head", () => {
@@ -86,7 +90,13 @@ describe("a new plan", () => {
 
 describe("violations", () => {
   it("are shown beside the field they are about", () => {
-    const all = toPlanFields([{ field: "spec.films[0].zones[1].disc.radius_mm", description: "is 0 mm" }, { field: "spec.model", description: "is missing" }], "simulation");
+    const all = toPlanFields(
+      [
+        { field: "spec.films[0].zones[1].disc.radius_mm", description: "is 0 mm" },
+        { field: "spec.model", description: "is missing" },
+      ],
+      "simulation",
+    );
     expect(descriptionFor("simulation.films[0].zones[1]", all)).toBe("disc.radius_mm is 0 mm");
     expect(descriptionFor("simulation.films[0].zones[1].disc.radius_mm", all)).toBe("is 0 mm");
     expect(descriptionFor("simulation.films[0].zones[10]", all)).toBe("");

@@ -1,0 +1,100 @@
+// What is taken home from a run, and runs that are opened again.
+import { signal } from "@preact/signals";
+import type { Simulation } from "@wire/simulation_pb";
+import { simulations } from "../api/client";
+import { writePlan } from "../plan/plan_file";
+import { attempt, canRun, plan, scanFile, tell } from "../plan/state";
+import { save, seriesCsv, stateWord, surfaceObj } from "../run/exports";
+import { hasResult, openExisting, recorded, rows, simulation } from "../run/run";
+import { FileButton, Section, SelectField } from "./fields";
+import { shownScene } from "./stage_state";
+
+export function Exports() {
+  const name = plan.value.name || "plan";
+  const savePicture = async (): Promise<void> => {
+    try {
+      if (shownScene.value) save(`${name}.png`, await shownScene.value.viewport.capture());
+    } catch (error) {
+      tell(error);
+    }
+  };
+  const saveMesh = (): void => {
+    const scene = shownScene.value;
+    if (scene?.points && scene.mesh)
+      save(`${name}.obj`, surfaceObj(scene.points, scene.mesh.cells, scene.mesh.corners));
+  };
+  return (
+    <Section title="Take home">
+      <div class="row wrap">
+        <button
+          type="button"
+          class="button"
+          disabled={!canRun.value}
+          onClick={() => save(`${name}.json`, writePlan(plan.value, scanFile.value.name, scanFile.value.unit))}
+        >
+          Plan
+        </button>
+        <button
+          type="button"
+          class="button"
+          disabled={rows.value.length === 0}
+          onClick={() => save(`${name}.csv`, seriesCsv(rows.value))}
+        >
+          CSV
+        </button>
+        <button type="button" class="button" onClick={() => void savePicture()}>
+          Picture
+        </button>
+        <button type="button" class="button" disabled={!hasResult.value} onClick={saveMesh}>
+          Mesh
+        </button>
+      </div>
+      <p class="quiet">
+        The plan runs with <code>lipofill run</code> beside {scanFile.value.name}.
+      </p>
+    </Section>
+  );
+}
+
+const known = signal<Simulation[]>([]);
+
+export function Recorded() {
+  const load = async (): Promise<void> => {
+    try {
+      known.value = (await simulations.listSimulations({ pageSize: 1000 })).simulations;
+    } catch (error) {
+      tell(error);
+    }
+  };
+  return (
+    <Section title="Open a run">
+      <div class="field" onFocusCapture={() => void load()} onPointerEnter={() => void load()}>
+        <SelectField
+          label="Of the daemon"
+          value={known.value.some(({ name }) => name === simulation.value?.name) ? simulation.value!.name : ""}
+          onChange={(value) => {
+            const next = known.value.find(({ name }) => name === value);
+            if (next) void openExisting(next);
+          }}
+          options={[
+            { value: "", label: "Choose…" },
+            ...known.value.map((one) => ({
+              value: one.name,
+              label: `${one.displayName || one.name.split("/")[1]} · ${stateWord(one)} · ${(one.summary?.injectedMl ?? 0).toFixed(1)} mL`,
+            })),
+          ]}
+        />
+      </div>
+      <FileButton
+        label="Result folder…"
+        folder
+        onFiles={(files) =>
+          void attempt("Reading the results", async (progress) => {
+            const { openFolder } = await import("../run/recorded"); // and with it the toolkit's reader
+            await openFolder(files, progress);
+          })
+        }
+      />
+    </Section>
+  );
+}

@@ -5,7 +5,7 @@ import { simulations } from "../api/client";
 import { writePlan } from "../plan/plan_file";
 import { attempt, canRun, plan, scanFile, tell } from "../plan/state";
 import { save, seriesCsv, stateWord, surfaceObj } from "../run/exports";
-import { hasResult, openExisting, recorded, rows, simulation } from "../run/run";
+import { hasResult, openExisting, rows, simulation } from "../run/run";
 import { FileButton, Section, SelectField } from "./fields";
 import { shownScene } from "./stage_state";
 

@@ -216,8 +216,8 @@ class Viewer(Client):
         self.journal.count(f"watches, {self.options.behaviour}")
 
     def present(self) -> Optional[str]:
-        # Of one that is READY its maker may not know yet: it cannot be watched before that.
-        states = (simulation_pb2.Simulation.RUNNING, simulation_pb2.Simulation.PAUSED)
+        # Also those that are READY: of some of them not even the maker knows yet.
+        states = (simulation_pb2.Simulation.READY, simulation_pb2.Simulation.RUNNING, simulation_pb2.Simulation.PAUSED)
         running = [each.name for each in self.connection.simulations.list() if each.state in states]
         return self.random.choice(running) if running else None
 

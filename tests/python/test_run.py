@@ -5,6 +5,7 @@ import pytest
 
 import lipofill
 from conftest import PLANS, make_plate
+from lipofill.v1 import simulation_pb2
 
 
 @pytest.fixture(scope="module")
@@ -163,7 +164,9 @@ def test_the_same_plan_gives_the_same_state(connection, plate):
 
 
 def test_an_injection_and_a_checkpoint_while_it_runs(connection):
-    with connection.run(make_plate(end_s=1.0)) as run:
+    plan = make_plate(end_s=1.0)
+    plan.simulation.pace = simulation_pb2.REAL_TIME
+    with connection.run(plan) as run:
         run.pause()
         kept = run.checkpoint("before")
         run.inject("middle", volume_ml=0.1, rate_ml_per_s=1.0)

@@ -50,7 +50,8 @@ export class PictureReader {
   private constructor(private readonly page: Page) {}
 
   static async open(page: Page): Promise<PictureReader> {
-    const blank = await page.context().newPage();
+    // In a window of its own: a tab behind another one is not drawn.
+    const blank = await page.context().browser()!.newPage();
     await blank.evaluate(`window.pixels = (${inBrowser.toString()})()`);
     await page.bringToFront();
     return new PictureReader(blank);

@@ -6,6 +6,7 @@
 #include <grpcpp/generic/generic_stub.h>
 #include <gtest/gtest.h>
 
+#include "absl/strings/str_cat.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 
@@ -52,13 +53,13 @@ std::string Answer::reason() const {
 }
 
 std::string full_name(const std::string& method) {
-  return method[0] == '/' ? method : "/lipofill.v1." + method;
+  return method[0] == '/' ? method : absl::StrCat("/lipofill.v1.", method);
 }
 
 std::unique_ptr<grpc::ClientContext> Caller::context() const {
   auto context = std::make_unique<grpc::ClientContext>();
   context->set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(60));
-  if (!token_.empty()) context->AddMetadata("authorization", "Bearer " + token_);
+  if (!token_.empty()) context->AddMetadata("authorization", absl::StrCat("Bearer ", token_));
   return context;
 }
 

@@ -69,7 +69,7 @@ Answer Caller::call(const std::string& method, const Message& request) const {
 
 Answer Caller::call_json(const std::string& method, const std::string& request) const {
   const auto message = make_request(method, request);
-  EXPECT_NE(message, nullptr) << "there is no method " << method;
+  EXPECT_TRUE(message != nullptr) << "there is no method " << method;
   return message == nullptr ? Answer{grpc::Status(grpc::StatusCode::UNKNOWN, ""), {}} : call(method, *message);
 }
 

@@ -1,10 +1,10 @@
 #include "server/rpc/checkpoint_calls.h"
 
-#include <future>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
+#include "server/rpc/await.h"
 #include "server/rpc/names.h"
 #include "server/rpc/parking.h"
 #include "server/rpc/request_key.h"
@@ -59,10 +59,10 @@ absl::StatusOr<v1::Simulation> take_back(Backend& backend, const RestoreTarget& 
   if (session == nullptr) return no_session_for("restore", target.source);
   auto loaded = load_checkpoint(backend, target.checkpoint, target.source.model);
   if (!loaded.ok()) return loaded.status();
-  auto answer = std::make_shared<std::promise<absl::StatusOr<SessionView>>>();
-  session->restore({target.checkpoint, std::move(loaded->simulation), loaded->content.spec_message}, target.key,
-                   [answer](absl::StatusOr<SessionView> view) { answer->set_value(std::move(view)); });
-  const auto view = answer->get_future().get();
+  const auto view = await<absl::StatusOr<SessionView>>([&](auto reply) {
+    session->restore({target.checkpoint, std::move(loaded->simulation), loaded->content.spec_message}, target.key,
+                     std::move(reply));
+  });
   if (!view.ok()) return view.status();
   const auto record = backend.store.get_simulation(target.source.id);
   if (!record.ok()) return record.status();
@@ -187,10 +187,8 @@ absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const Princip
     const auto record = backend.store.get_simulation(*simulation);
     return record.ok() ? no_session_for("checkpoint", *record) : record.status();
   }
-  auto answer = std::make_shared<std::promise<absl::StatusOr<CheckpointRecord>>>();
-  session->checkpoint(*id, key,
-                      [answer](absl::StatusOr<CheckpointRecord> record) { answer->set_value(std::move(record)); });
-  const auto record = answer->get_future().get();
+  const auto record =
+      await<absl::StatusOr<CheckpointRecord>>([&](auto reply) { session->checkpoint(*id, key, std::move(reply)); });
   if (!record.ok()) return record.status();
   return to_checkpoint(*record);
 }

@@ -1,8 +1,7 @@
 #include "server/rpc/simulation_creation.h"
 
-#include <future>
-
 #include "absl/strings/str_cat.h"
+#include "server/rpc/await.h"
 #include "server/rpc/etag.h"
 #include "server/rpc/names.h"
 #include "server/rpc/parking.h"
@@ -55,9 +54,7 @@ absl::StatusOr<v1::Simulation> show_checked(Backend& backend, const SimulationRe
 }
 
 absl::StatusOr<SessionView> start_and_wait(Session& session) {
-  auto answer = std::make_shared<std::promise<absl::StatusOr<SessionView>>>();
-  session.start({}, [answer](absl::StatusOr<SessionView> view) { answer->set_value(std::move(view)); });
-  return answer->get_future().get();
+  return await<absl::StatusOr<SessionView>>([&session](auto reply) { session.start({}, std::move(reply)); });
 }
 
 }  // namespace

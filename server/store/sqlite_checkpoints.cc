@@ -30,18 +30,17 @@ CheckpointRecord checkpoint_of(const Query& row) {
 absl::StatusOr<CheckpointRecord> SqliteStore::create_checkpoint(const CheckpointRecord& checkpoint,
                                                                 const std::optional<SeriesChunk>& rows,
                                                                 const RequestKey& request) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  if (const auto simulation = read_simulation(checkpoint.simulation); !simulation.ok()) return simulation.status();
-  absl::Status done = write_checkpoint(checkpoint);
-  if (rows.has_value()) done.Update(write_rows(checkpoint.simulation, *rows));
-  done.Update(write_request(request, checkpoint_name(checkpoint.simulation, checkpoint.id)));
-  if (!done.ok()) return done;
-  auto kept = read_checkpoint(checkpoint.simulation, checkpoint.id);
-  if (kept.ok()) done.Update(transaction.commit());
-  if (!done.ok()) return done;
-  return kept;
+  absl::StatusOr<CheckpointRecord> kept = absl::UnknownError("");
+  const absl::Status done = transact([&]() -> absl::Status {
+    if (const auto simulation = read_simulation(checkpoint.simulation); !simulation.ok()) return simulation.status();
+    absl::Status written = write_checkpoint(checkpoint);
+    if (rows.has_value()) written.Update(write_rows(checkpoint.simulation, *rows));
+    written.Update(write_request(request, checkpoint_name(checkpoint.simulation, checkpoint.id)));
+    if (!written.ok()) return written;
+    kept = read_checkpoint(checkpoint.simulation, checkpoint.id);
+    return kept.status();
+  });
+  return done.ok() ? kept : done;
 }
 
 absl::Status SqliteStore::write_checkpoint(const CheckpointRecord& checkpoint) {
@@ -83,22 +82,19 @@ absl::StatusOr<std::vector<CheckpointRecord>> SqliteStore::list_checkpoints(cons
 }
 
 absl::Status SqliteStore::delete_checkpoint(const std::string& simulation, const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const auto checkpoint = read_checkpoint(simulation, id);
-  if (!checkpoint.ok()) return checkpoint.status();
-  const auto owner = read_simulation(simulation);
-  if (!owner.ok()) return owner.status();
-  if (checkpoint->kind == CheckpointKind::kOrigin && !has_ended(owner->state)) {
-    return absl::FailedPreconditionError(absl::StrCat(simulation_name(simulation), " began from ",
-                                                      checkpoint_name(simulation, id), " and has not ended"));
-  }
-  Query remove(*database_, "DELETE FROM checkpoints WHERE simulation = ? AND id = ?");
-  absl::Status done = remove.bind(simulation, id).run();
-  done.Update(forget_requests(checkpoint_name(simulation, id)));
-  if (done.ok()) done.Update(transaction.commit());
-  return done;
+  return transact([&]() -> absl::Status {
+    const auto checkpoint = read_checkpoint(simulation, id);
+    if (!checkpoint.ok()) return checkpoint.status();
+    const auto owner = read_simulation(simulation);
+    if (!owner.ok()) return owner.status();
+    if (checkpoint->kind == CheckpointKind::kOrigin && !has_ended(owner->state)) {
+      return absl::FailedPreconditionError(absl::StrCat(simulation_name(simulation), " began from ",
+                                                        checkpoint_name(simulation, id), " and has not ended"));
+    }
+    Query remove(*database_, "DELETE FROM checkpoints WHERE simulation = ? AND id = ?");
+    const absl::Status removed = remove.bind(simulation, id).run();
+    return removed.ok() ? forget_requests(checkpoint_name(simulation, id)) : removed;
+  });
 }
 
 absl::Status SqliteStore::prune_checkpoints(const std::string& simulation, int keep) {

@@ -18,21 +18,16 @@ std::optional<SimulationState> state_after(CommandKind kind) {
 
 absl::StatusOr<bool> SqliteStore::append_command(const CommandRecord& command, const std::string& spec_message,
                                                  const RequestKey& request) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const auto made = read_request(request);
-  if (!made.ok()) return made.status();
-  if (made->has_value()) return false;
-  const auto simulation = read_simulation(command.simulation);
-  if (!simulation.ok()) return simulation.status();
-  absl::Status done = write_command(command);
-  done.Update(write_state(command.simulation, state_after(command.kind).value_or(simulation->state),
-                          spec_message.empty() ? simulation->spec_message : spec_message));
-  done.Update(write_request(request, simulation_name(command.simulation)));
-  if (done.ok()) done.Update(transaction.commit());
-  if (!done.ok()) return done;
-  return true;
+  const auto earlier = transact_once(request, simulation_name(command.simulation), [&]() -> absl::Status {
+    const auto simulation = read_simulation(command.simulation);
+    if (!simulation.ok()) return simulation.status();
+    absl::Status done = write_command(command);
+    done.Update(write_state(command.simulation, state_after(command.kind).value_or(simulation->state),
+                            spec_message.empty() ? simulation->spec_message : spec_message));
+    return done;
+  });
+  if (!earlier.ok()) return earlier.status();
+  return !earlier->has_value();
 }
 
 absl::Status SqliteStore::write_command(const CommandRecord& command) {
@@ -67,12 +62,14 @@ absl::StatusOr<std::vector<CommandRecord>> SqliteStore::list_commands(const std:
 
 absl::StatusOr<bool> SqliteStore::restore_simulation(const CommandRecord& restore, SimulationState state,
                                                      const std::string& spec_message, const RequestKey& request) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const auto made = read_request(request);
-  if (!made.ok()) return made.status();
-  if (made->has_value()) return false;
+  const auto earlier = transact_once(request, simulation_name(restore.simulation),
+                                     [&] { return write_restore(restore, state, spec_message); });
+  if (!earlier.ok()) return earlier.status();
+  return !earlier->has_value();
+}
+
+absl::Status SqliteStore::write_restore(const CommandRecord& restore, SimulationState state,
+                                        const std::string& spec_message) {
   const std::string& id = restore.simulation;
   const auto checkpoint = read_checkpoint(id, restore.payload);
   if (!checkpoint.ok()) return checkpoint.status();
@@ -93,10 +90,7 @@ absl::StatusOr<bool> SqliteStore::restore_simulation(const CommandRecord& restor
     done.Update(write_command({id, 0, goes_on, restore.step, "", restore.create_time_us}));
   }
   done.Update(write_state(id, state, spec_message));
-  done.Update(write_request(request, simulation_name(id)));
-  if (done.ok()) done.Update(transaction.commit());
-  if (!done.ok()) return done;
-  return true;
+  return done;
 }
 
 }  // namespace lipofill::server

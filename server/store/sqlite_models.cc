@@ -17,26 +17,23 @@ absl::Status no_model(const std::string& patient, const std::string& id) {
 }  // namespace
 
 absl::StatusOr<ModelRecord> SqliteStore::create_model(const ModelRecord& model, const RequestKey& request) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const auto made = read_request(request);
-  if (!made.ok()) return made.status();
-  if (made->has_value()) return read_model(model.patient, (**made).substr(model_name(model.patient, "").size()));
+  const auto earlier = transact_once(request, model_name(model.patient, model.id), [&] { return write_model(model); });
+  if (!earlier.ok()) return earlier.status();
+  if (earlier->has_value()) return get_model(model.patient, (**earlier).substr(model_name(model.patient, "").size()));
+  return model;
+}
+
+absl::Status SqliteStore::write_model(const ModelRecord& model) {
   if (const auto patient = read_patient(model.patient); !patient.ok()) return patient.status();
   for (const std::string& id : {model.scan, model.bone_scan}) {
     if (id.empty()) continue;
     if (const auto scan = read_scan(model.patient, id); !scan.ok()) return scan.status();
   }
   Query insert(*database_, "INSERT INTO models (" MODEL_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
-  absl::Status done = insert
-                          .bind(model.patient, model.id, model.scan, model.content_hash, model.spec_message,
-                                model.report_message, model.create_time_us, model.bone_scan)
-                          .run();
-  done.Update(write_request(request, model_name(model.patient, model.id)));
-  if (done.ok()) done.Update(transaction.commit());
-  if (!done.ok()) return done;
-  return model;
+  return insert
+      .bind(model.patient, model.id, model.scan, model.content_hash, model.spec_message, model.report_message,
+            model.create_time_us, model.bone_scan)
+      .run();
 }
 
 absl::StatusOr<ModelRecord> SqliteStore::get_model(const std::string& patient, const std::string& id) {
@@ -63,17 +60,14 @@ absl::StatusOr<std::vector<ModelRecord>> SqliteStore::list_models(const std::str
 }
 
 absl::Status SqliteStore::delete_model(const std::string& patient, const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const std::string name = model_name(patient, id);
-  if (auto unused = check_unused(name, name + '\0'); !unused.ok()) return unused;
-  Query remove(*database_, "DELETE FROM models WHERE patient = ? AND id = ?");
-  absl::Status done = remove.bind(patient, id).run();
-  if (done.ok() && database_->changes() == 0) return no_model(patient, id);
-  done.Update(forget_requests(name));
-  if (done.ok()) done.Update(transaction.commit());
-  return done;
+  return transact([&]() -> absl::Status {
+    const std::string name = model_name(patient, id);
+    if (auto unused = check_unused(name, name + '\0'); !unused.ok()) return unused;
+    Query remove(*database_, "DELETE FROM models WHERE patient = ? AND id = ?");
+    const absl::Status removed = remove.bind(patient, id).run();
+    if (removed.ok() && database_->changes() == 0) return no_model(patient, id);
+    return removed.ok() ? forget_requests(name) : removed;
+  });
 }
 
 }  // namespace lipofill::server

@@ -12,22 +12,19 @@ absl::Status no_patient(const std::string& id) {
 }  // namespace
 
 absl::StatusOr<PatientRecord> SqliteStore::create_patient(const PatientRecord& patient, const RequestKey& request) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const auto made = read_request(request);
-  if (!made.ok()) return made.status();
-  if (made->has_value()) return read_patient((**made).substr(patient_name("").size()));
+  const auto earlier = transact_once(request, patient_name(patient.id), [&] { return write_patient(patient); });
+  if (!earlier.ok()) return earlier.status();
+  if (earlier->has_value()) return get_patient((**earlier).substr(patient_name("").size()));
+  return patient;
+}
+
+absl::Status SqliteStore::write_patient(const PatientRecord& patient) {
   Query insert(*database_, "INSERT INTO patients (id, display_name, create_time_us, tenant) VALUES (?, ?, ?, ?)");
-  auto done = insert.bind(patient.id, patient.display_name, patient.create_time_us, patient.tenant).run();
+  const auto done = insert.bind(patient.id, patient.display_name, patient.create_time_us, patient.tenant).run();
   if (absl::IsAlreadyExists(done)) {
     return absl::AlreadyExistsError(absl::StrCat(patient_name(patient.id), " exists"));
   }
-  done.Update(write_labels(patient));
-  done.Update(write_request(request, patient_name(patient.id)));
-  if (done.ok()) done.Update(transaction.commit());
-  if (!done.ok()) return done;
-  return patient;
+  return done.ok() ? write_labels(patient) : done;
 }
 
 absl::Status SqliteStore::write_labels(const PatientRecord& patient) {
@@ -85,44 +82,40 @@ absl::StatusOr<Owner> SqliteStore::owner_of_patient(const std::string& id) {
 }
 
 absl::StatusOr<PatientRecord> SqliteStore::update_patient(const std::string& id, const PatientChange& change) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const auto present = read_patient(id);
-  if (!present.ok()) return present.status();
-  const auto patient = change(*present);
-  if (!patient.ok()) return patient.status();
-  Query update(*database_, "UPDATE patients SET display_name = ? WHERE id = ?");
-  absl::Status done = update.bind(patient->display_name, id).run();
-  done.Update(write_labels(*patient));
-  if (done.ok()) done.Update(transaction.commit());
-  if (!done.ok()) return done;
-  return patient;
+  absl::StatusOr<PatientRecord> patient = absl::UnknownError("");
+  const absl::Status done = transact([&]() -> absl::Status {
+    patient = read_patient(id);
+    if (patient.ok()) patient = change(*patient);
+    if (!patient.ok()) return patient.status();
+    Query update(*database_, "UPDATE patients SET display_name = ? WHERE id = ?");
+    const absl::Status updated = update.bind(patient->display_name, id).run();
+    return updated.ok() ? write_labels(*patient) : updated;
+  });
+  return done.ok() ? patient : done;
 }
 
 absl::Status SqliteStore::delete_patient(const std::string& id, bool force, const PatientCheck& check) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const auto patient = read_patient(id);
-  if (!patient.ok()) return patient.status();
-  if (check != nullptr) {
-    if (absl::Status fits = check(*patient); !fits.ok()) return fits;
-  }
+  return transact([&]() -> absl::Status {
+    const auto patient = read_patient(id);
+    if (!patient.ok()) return patient.status();
+    absl::Status fits = check != nullptr ? check(*patient) : absl::OkStatus();
+    if (fits.ok() && !force) fits = check_empty(id);
+    if (fits.ok()) fits = check_unused(patient_name(id) + "/", patient_name(id) + "0");
+    if (!fits.ok()) return fits;
+    Query remove(*database_, "DELETE FROM patients WHERE id = ?");
+    const absl::Status removed = remove.bind(id).run();
+    return removed.ok() ? forget_requests(patient_name(id)) : removed;
+  });
+}
+
+absl::Status SqliteStore::check_empty(const std::string& patient) {
   Query count(
       *database_,
       "SELECT (SELECT count(*) FROM scans WHERE patient = ?1), (SELECT count(*) FROM models WHERE patient = ?1)");
-  if (!count.bind(id).next()) return count.status();
-  if (!force && count.integer(0) + count.integer(1) > 0) {
-    return absl::FailedPreconditionError(absl::StrCat(patient_name(id), " has ", count.integer(0), " scans and ",
-                                                      count.integer(1), " models; delete them first, or force"));
-  }
-  if (auto unused = check_unused(patient_name(id) + "/", patient_name(id) + "0"); !unused.ok()) return unused;
-  Query remove(*database_, "DELETE FROM patients WHERE id = ?");
-  absl::Status done = remove.bind(id).run();
-  done.Update(forget_requests(patient_name(id)));
-  if (done.ok()) done.Update(transaction.commit());
-  return done;
+  if (!count.bind(patient).next()) return count.status();
+  if (count.integer(0) + count.integer(1) == 0) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat(patient_name(patient), " has ", count.integer(0), " scans and ",
+                                                    count.integer(1), " models; delete them first, or force"));
 }
 
 }  // namespace lipofill::server

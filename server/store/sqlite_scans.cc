@@ -28,25 +28,21 @@ absl::Status no_scan(const std::string& patient, const std::string& id) {
 }  // namespace
 
 absl::StatusOr<ScanRecord> SqliteStore::create_scan(const ScanRecord& scan, const RequestKey& request) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const auto made = read_request(request);
-  if (!made.ok()) return made.status();
-  if (made->has_value()) return read_scan(scan.patient, (**made).substr(scan_name(scan.patient, "").size()));
+  const auto earlier = transact_once(request, scan_name(scan.patient, scan.id), [&] { return write_scan(scan); });
+  if (!earlier.ok()) return earlier.status();
+  if (earlier->has_value()) return get_scan(scan.patient, (**earlier).substr(scan_name(scan.patient, "").size()));
+  return scan;
+}
+
+absl::Status SqliteStore::write_scan(const ScanRecord& scan) {
   if (const auto patient = read_patient(scan.patient); !patient.ok()) return patient.status();
   Query insert(*database_, "INSERT INTO scans (" SCAN_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  absl::Status done = insert
-                          .bind(scan.patient, scan.id, scan.format, scan.unit, scan.size_bytes, scan.sha256,
-                                scan.received_bytes, scan.complete, scan.report_message, scan.create_time_us)
-                          .run();
-  if (absl::IsAlreadyExists(done)) {
-    return absl::AlreadyExistsError(absl::StrCat(scan_name(scan.patient, scan.id), " exists"));
-  }
-  done.Update(write_request(request, scan_name(scan.patient, scan.id)));
-  if (done.ok()) done.Update(transaction.commit());
-  if (!done.ok()) return done;
-  return scan;
+  const absl::Status done = insert
+                                .bind(scan.patient, scan.id, scan.format, scan.unit, scan.size_bytes, scan.sha256,
+                                      scan.received_bytes, scan.complete, scan.report_message, scan.create_time_us)
+                                .run();
+  if (!absl::IsAlreadyExists(done)) return done;
+  return absl::AlreadyExistsError(absl::StrCat(scan_name(scan.patient, scan.id), " exists"));
 }
 
 absl::StatusOr<ScanRecord> SqliteStore::get_scan(const std::string& patient, const std::string& id) {
@@ -88,21 +84,18 @@ absl::Status SqliteStore::complete_scan(const std::string& patient, const std::s
 }
 
 absl::Status SqliteStore::delete_scan(const std::string& patient, const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  Query count(*database_,
-              "SELECT id FROM models WHERE patient = ? AND (scan = ? OR bone_scan = ?) ORDER BY id LIMIT 1");
-  if (count.bind(patient, id, id).next()) {
-    return absl::FailedPreconditionError(
-        absl::StrCat(model_name(patient, count.text(0)), " was built from ", scan_name(patient, id)));
-  }
-  Query remove(*database_, "DELETE FROM scans WHERE patient = ? AND id = ?");
-  absl::Status done = remove.bind(patient, id).run();
-  if (done.ok() && database_->changes() == 0) return no_scan(patient, id);
-  done.Update(forget_requests(scan_name(patient, id)));
-  if (done.ok()) done.Update(transaction.commit());
-  return done;
+  return transact([&]() -> absl::Status {
+    Query count(*database_,
+                "SELECT id FROM models WHERE patient = ? AND (scan = ? OR bone_scan = ?) ORDER BY id LIMIT 1");
+    if (count.bind(patient, id, id).next()) {
+      return absl::FailedPreconditionError(
+          absl::StrCat(model_name(patient, count.text(0)), " was built from ", scan_name(patient, id)));
+    }
+    Query remove(*database_, "DELETE FROM scans WHERE patient = ? AND id = ?");
+    const absl::Status removed = remove.bind(patient, id).run();
+    if (removed.ok() && database_->changes() == 0) return no_scan(patient, id);
+    return removed.ok() ? forget_requests(scan_name(patient, id)) : removed;
+  });
 }
 
 }  // namespace lipofill::server

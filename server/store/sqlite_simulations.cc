@@ -34,33 +34,24 @@ absl::Status no_simulation(const std::string& id) {
 
 absl::StatusOr<SimulationRecord> SqliteStore::create_simulation(const SimulationRecord& simulation,
                                                                 const RequestKey& request) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const auto made = read_request(request);
-  if (!made.ok()) return made.status();
-  if (made->has_value()) return read_simulation((**made).substr(simulation_name("").size()));
-  absl::Status done = write_simulation(simulation);
-  done.Update(write_request(request, simulation_name(simulation.id)));
-  if (done.ok()) done.Update(transaction.commit());
-  if (!done.ok()) return done;
-  return simulation;
+  return make_simulation(simulation, nullptr, request);
 }
 
 absl::StatusOr<SimulationRecord> SqliteStore::create_simulation_from(const SimulationRecord& simulation,
                                                                      const CheckpointRecord& origin,
                                                                      const RequestKey& request) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  const auto made = read_request(request);
-  if (!made.ok()) return made.status();
-  if (made->has_value()) return read_simulation((**made).substr(simulation_name("").size()));
-  absl::Status done = write_simulation(simulation);
-  done.Update(write_checkpoint(origin));
-  done.Update(write_request(request, simulation_name(simulation.id)));
-  if (done.ok()) done.Update(transaction.commit());
-  if (!done.ok()) return done;
+  return make_simulation(simulation, &origin, request);
+}
+
+absl::StatusOr<SimulationRecord> SqliteStore::make_simulation(const SimulationRecord& simulation,
+                                                              const CheckpointRecord* origin,
+                                                              const RequestKey& request) {
+  const auto earlier = transact_once(request, simulation_name(simulation.id), [&] {
+    const absl::Status written = write_simulation(simulation);
+    return written.ok() && origin != nullptr ? write_checkpoint(*origin) : written;
+  });
+  if (!earlier.ok()) return earlier.status();
+  if (earlier->has_value()) return get_simulation((**earlier).substr(simulation_name("").size()));
   return simulation;
 }
 
@@ -107,18 +98,16 @@ absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_simulations(cons
 }
 
 absl::Status SqliteStore::end_simulation(const SimulationRecord& ended, const SimulationResult& result) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  Query update(*database_, "UPDATE simulations SET state = ?, reason = ?, summary = ? WHERE id = ?");
-  absl::Status done = update.bind(static_cast<int>(ended.state), ended.reason, ended.summary_message, ended.id).run();
-  if (done.ok() && database_->changes() == 0) return no_simulation(ended.id);
-  Query insert(*database_, "INSERT OR REPLACE INTO simulation_results VALUES (?, ?, ?)");
-  done.Update(insert.bind(ended.id, result.meshes_message, result.frame_message).run());
-  Query drop(*database_, "DELETE FROM checkpoints WHERE simulation = ? AND kind = ?");
-  done.Update(drop.bind(ended.id, static_cast<int>(CheckpointKind::kAutomatic)).run());
-  if (done.ok()) done.Update(transaction.commit());
-  return done;
+  return transact([&]() -> absl::Status {
+    Query update(*database_, "UPDATE simulations SET state = ?, reason = ?, summary = ? WHERE id = ?");
+    absl::Status done = update.bind(static_cast<int>(ended.state), ended.reason, ended.summary_message, ended.id).run();
+    if (done.ok() && database_->changes() == 0) return no_simulation(ended.id);
+    Query insert(*database_, "INSERT OR REPLACE INTO simulation_results VALUES (?, ?, ?)");
+    done.Update(insert.bind(ended.id, result.meshes_message, result.frame_message).run());
+    Query drop(*database_, "DELETE FROM checkpoints WHERE simulation = ? AND kind = ?");
+    done.Update(drop.bind(ended.id, static_cast<int>(CheckpointKind::kAutomatic)).run());
+    return done;
+  });
 }
 
 absl::Status SqliteStore::set_simulation_state(const std::string& id, SimulationState state,
@@ -182,15 +171,12 @@ absl::StatusOr<SimulationResult> SqliteStore::get_result(const std::string& id) 
 }
 
 absl::Status SqliteStore::delete_simulation(const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  Transaction transaction(*database_);
-  if (!transaction.status().ok()) return transaction.status();
-  Query remove(*database_, "DELETE FROM simulations WHERE id = ?");
-  absl::Status done = remove.bind(id).run();
-  if (done.ok() && database_->changes() == 0) return no_simulation(id);
-  done.Update(forget_requests(simulation_name(id)));
-  if (done.ok()) done.Update(transaction.commit());
-  return done;
+  return transact([&]() -> absl::Status {
+    Query remove(*database_, "DELETE FROM simulations WHERE id = ?");
+    const absl::Status removed = remove.bind(id).run();
+    if (removed.ok() && database_->changes() == 0) return no_simulation(id);
+    return removed.ok() ? forget_requests(simulation_name(id)) : removed;
+  });
 }
 
 absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_unended_simulations() {

@@ -22,6 +22,29 @@ absl::StatusOr<std::optional<std::string>> SqliteStore::find_request(const Reque
   return read_request(request);
 }
 
+absl::Status SqliteStore::transact(const Work& work) {
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(*database_);
+  if (!transaction.status().ok()) return transaction.status();
+  const absl::Status done = work();
+  return done.ok() ? transaction.commit() : done;
+}
+
+absl::StatusOr<std::optional<std::string>> SqliteStore::transact_once(const RequestKey& request,
+                                                                      const std::string& name, const Work& work) {
+  std::optional<std::string> earlier;
+  const absl::Status done = transact([&]() -> absl::Status {
+    auto made = read_request(request);
+    if (!made.ok()) return made.status();
+    earlier = *std::move(made);
+    if (earlier.has_value()) return absl::OkStatus();
+    const absl::Status worked = work();
+    return worked.ok() ? write_request(request, name) : worked;
+  });
+  if (!done.ok()) return done;
+  return earlier;
+}
+
 absl::StatusOr<std::optional<std::string>> SqliteStore::read_request(const RequestKey& request) {
   if (request.id.empty()) return std::nullopt;
   Query query(*database_, "SELECT fingerprint, name FROM requests WHERE tenant = ? AND method = ? AND id = ?");

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,14 +81,32 @@ class SqliteStore : public Store {
  private:
   explicit SqliteStore(std::unique_ptr<Database> database) : database_(std::move(database)) {}
 
+  /// Does what is to be done whole or not at all: nothing it wrote stays when it is not OK.
+  using Work = std::function<absl::Status()>;
+  absl::Status transact(const Work& work);
+  /// The same for what a request makes, or changes, once: `name` is remembered with it. The name that an equal request
+  /// is remembered with, and nothing is done, where there was one.
+  absl::StatusOr<std::optional<std::string>> transact_once(const RequestKey& request, const std::string& name,
+                                                           const Work& work);
+
+  /// `origin`: the checkpoint it begins from, if any.
+  absl::StatusOr<SimulationRecord> make_simulation(const SimulationRecord& simulation, const CheckpointRecord* origin,
+                                                   const RequestKey& request);
+
   /// The following are called with the mutex held.
   absl::StatusOr<PatientRecord> read_patient(const std::string& id);
   absl::StatusOr<ScanRecord> read_scan(const std::string& patient, const std::string& id);
   absl::StatusOr<ModelRecord> read_model(const std::string& patient, const std::string& id);
   absl::StatusOr<SimulationRecord> read_simulation(const std::string& id);
   absl::StatusOr<CheckpointRecord> read_checkpoint(const std::string& simulation, const std::string& id);
+  absl::Status write_patient(const PatientRecord& patient);
+  absl::Status write_scan(const ScanRecord& scan);
+  absl::Status write_model(const ModelRecord& model);
+  /// OK unless it has scans or models.
+  absl::Status check_empty(const std::string& patient);
   absl::Status write_simulation(const SimulationRecord& simulation);
   absl::Status write_command(const CommandRecord& command);
+  absl::Status write_restore(const CommandRecord& restore, SimulationState state, const std::string& spec_message);
   absl::Status write_checkpoint(const CheckpointRecord& checkpoint);
   absl::Status write_state(const std::string& simulation, SimulationState state, const std::string& spec_message);
   absl::Status write_rows(const std::string& simulation, const SeriesChunk& rows);

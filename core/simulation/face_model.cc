@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
 #include "core/base/hash.h"
+#include "core/simulation/face_model_check.h"
 #include "core/simulation/layer_thickness.h"
 
 namespace lipofill::simulation {
@@ -35,23 +36,6 @@ void check_support(const Support& support, const char* field, bool is_square, Fi
   if (support.kind == SupportKind::kRollers && !is_square) {
     violations.add(absl::StrCat(field, ".kind"), "is ROLLERS, which needs a square: a scan's sides are not planes");
   }
-}
-
-absl::Status check_model(const FaceModelSpec& spec, bool is_square) {
-  FieldViolations violations;
-  if (spec.layers.empty() && !is_square) violations.add("layers", "are none, a scan needs at least 1");
-  std::set<std::string> names;
-  for (size_t l = 0; l < spec.layers.size(); ++l) {
-    const std::string field = absl::StrCat("layers[", l, "]");
-    const std::string& name = spec.layers[l].name;
-    if (name.empty()) violations.add(field + ".name", "is empty");
-    if (!names.insert(name).second) violations.add(field + ".name", absl::StrCat("is '", name, "' a second time"));
-    check_layer(spec.layers[l], field, violations);
-  }
-  check_thickness_requests(spec, violations);
-  check_support(spec.rim, "rim", is_square, violations);
-  check_support(spec.base, "base", is_square, violations);
-  return violations.to_status();
 }
 
 void add_matrix(Hasher& hasher, const Eigen::Matrix3Xd& matrix) {
@@ -139,11 +123,29 @@ absl::Status with_advice(const absl::Status& status, const LayerThickness& thick
 
 }  // namespace
 
+absl::Status check_face_model(const FaceModelSpec& spec) {
+  const bool is_square = std::holds_alternative<geometry::SquareSpec>(spec.region);
+  FieldViolations violations;
+  if (spec.layers.empty() && !is_square) violations.add("layers", "are none, a scan needs at least 1");
+  std::set<std::string> names;
+  for (size_t l = 0; l < spec.layers.size(); ++l) {
+    const std::string field = absl::StrCat("layers[", l, "]");
+    const std::string& name = spec.layers[l].name;
+    if (name.empty()) violations.add(field + ".name", "is empty");
+    if (!names.insert(name).second) violations.add(field + ".name", absl::StrCat("is '", name, "' a second time"));
+    check_layer(spec.layers[l], field, violations);
+  }
+  check_thickness_requests(spec, violations);
+  check_support(spec.rim, "rim", is_square, violations);
+  check_support(spec.base, "base", is_square, violations);
+  return violations.to_status();
+}
+
 absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceModelSpec& spec,
                                                                   const geometry::Progress& progress) {
   auto model = std::make_shared<FaceModel>();
   model->is_square = std::holds_alternative<geometry::SquareSpec>(spec.region);
-  if (const absl::Status status = check_model(spec, model->is_square); !status.ok()) return status;
+  if (const absl::Status status = check_face_model(spec); !status.ok()) return status;
 
   auto face = build_skin(spec, progress);
   if (!face.ok()) return face.status();

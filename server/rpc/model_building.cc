@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
+#include "core/simulation/face_model_check.h"
 #include "server/rpc/model_conversion.h"
 #include "server/rpc/names.h"
 #include "server/rpc/report_conversion.h"
@@ -68,7 +69,10 @@ absl::Status check_complete(Backend& backend, const std::string& patient, const 
 absl::Status check_spec(Backend& backend, const std::string& patient, const v1::BuildModelRequest& request) {
   FieldViolations violations;
   if (!request.has_spec()) return field_violation("spec", "is missing");
-  violations.absorb("spec", to_face_model_spec(request.spec()).status());
+  auto face = to_face_model_spec(request.spec());
+  // That there will be one is enough here.
+  if (face.ok() && !request.spec().scan_region().bone_scan().empty()) face->bone.emplace();
+  violations.absorb("spec", face.ok() ? simulation::check_face_model(*face) : face.status());
   const auto scans = scans_of(patient, request.spec());
   violations.absorb("spec", scans.status());
   if (!violations.empty()) return violations.to_status();

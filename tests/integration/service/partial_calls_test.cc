@@ -128,6 +128,11 @@ TEST_F(PartialCallsTest, ARequestThatIsOnlyCheckedLeavesNothing) {
   EXPECT_TRUE(operation.response().UnpackTo(&model));
   EXPECT_TRUE(model.has_spec());
 
+  build.mutable_spec()->mutable_layers(0)->set_poisson_ratio(0.7);
+  const grpc::Status refused = call(*patients_, &Patients::BuildModel, build, operation);
+  EXPECT_EQ(refused.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(violations_of(refused).count("spec.layers[0].poisson_ratio"), 1u);
+
   v1::CreateSimulationRequest create_simulation;
   create_simulation.set_simulation_id("z");
   *create_simulation.mutable_spec() = square_plan(model_.name(), 1.0);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/error_hints.h"
 #include "core/base/field_violations.h"
 #include "server/rpc/await.h"
 #include "server/rpc/names.h"
@@ -139,6 +140,12 @@ absl::Status no_session_for(const char* what, const SimulationRecord& record) {
   const std::string cannot = absl::StrCat("cannot ", what, ": ", simulation_name(record.id));
   if (has_ended(record.state)) {
     return absl::FailedPreconditionError(absl::StrCat(cannot, " is ", state_name(record.state)));
+  }
+  if (record.reason.empty()) {
+    // Its record is there, and can be listed, a moment before its session is.
+    constexpr double retry_delay_s = 0.1;
+    return with_hints(absl::UnavailableError(absl::StrCat(cannot, " is being made, try again")),
+                      {"BEING_MADE", retry_delay_s});
   }
   return absl::UnavailableError(absl::StrCat(cannot, " was not brought back: ", record.reason));
 }

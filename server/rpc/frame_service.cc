@@ -3,8 +3,8 @@
 #include <grpcpp/impl/codegen/proto_utils.h>
 
 #include "absl/strings/str_cat.h"
-#include "core/base/error_hints.h"
 #include "core/base/field_violations.h"
+#include "server/rpc/checkpoint_calls.h"
 #include "server/rpc/names.h"
 #include "server/rpc/parking.h"
 #include "server/rpc/unary.h"
@@ -15,7 +15,6 @@ namespace lipofill::server {
 namespace {
 
 constexpr double kRetryDelayS = 10.0;
-constexpr double kBeingMadeS = 0.1;
 
 absl::StatusOr<v1::WatchRequest> parse_request(const grpc::ByteBuffer& bytes) {
   grpc::ByteBuffer copy(bytes);
@@ -90,12 +89,6 @@ absl::StatusOr<ViewerOptions> to_viewer_options(const v1::WatchRequest& request)
   return options;
 }
 
-/// Its record is there, and can be listed, a moment before its session is.
-absl::Status being_made(const std::string& id) {
-  return with_hints(absl::UnavailableError(absl::StrCat("simulations/", id, " is being made, try again")),
-                    {"BEING_MADE", kBeingMadeS});
-}
-
 Courier::Clock::time_point to_steady(Principal::Clock::time_point time) {
   return Courier::Clock::now() + std::chrono::ceil<Courier::Clock::duration>(time - Principal::Clock::now());
 }
@@ -134,7 +127,7 @@ absl::Status FrameService::begin(grpc::CallbackServerContext* context, const grp
   }
   const auto record = backend_.store.get_simulation(*id);
   if (record.ok() && is_parked(*record)) return watch_parked(*request, *id, stream);
-  if (record.ok() && record->state == SimulationState::kReady) return being_made(*id);
+  if (record.ok() && record->state == SimulationState::kReady) return no_session_for("watch", *record);
   return watch_kept(*request, *id, stream);
 }
 

@@ -54,9 +54,9 @@ struct AuditSummary {
 };
 
 /// Looks through files of an audit log, given in their order: every line must carry on from the one before. DATA_LOSS
-/// naming the first that does not, INVALID_ARGUMENT for a file that cannot be read. That lines are missing at the end
-/// shows only against a head that was kept elsewhere: the daemon logs it when it starts, at each new file and when it
-/// stops.
+/// naming the first that does not, or when no line is one of an audit log; INVALID_ARGUMENT for a file that cannot be
+/// read. That lines are missing at the end shows only against a head that was kept elsewhere: the daemon logs it when
+/// it starts, at each new file and when it stops.
 absl::StatusOr<AuditSummary> verify_audit(const std::vector<std::string>& files);
 
 }  // namespace lipofill::server

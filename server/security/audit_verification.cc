@@ -58,7 +58,11 @@ absl::StatusOr<AuditSummary> verify_audit(const std::vector<std::string>& files)
   for (const std::string& file : files) {
     if (auto read = reader.read(file); !read.ok()) return read;
   }
-  return reader.summary();
+  const AuditSummary& summary = reader.summary();
+  if (summary.lines > 0 && summary.torn_lines == summary.lines) {
+    return absl::DataLossError("there is no line of an audit log in it");
+  }
+  return summary;
 }
 
 }  // namespace lipofill::server

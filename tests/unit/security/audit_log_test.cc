@@ -172,6 +172,7 @@ TEST_F(AuditLogTest, HasOneWriterAndRefusesWhatIsNoLog) {
   std::ofstream(directory_.file("other")) << "dear diary\n";
   EXPECT_TRUE(absl::IsDataLoss(AuditLog::open(directory_.file("other"), kLarge).status()));
   EXPECT_TRUE(absl::IsInvalidArgument(verify_audit({directory_.file("none")}).status()));
+  EXPECT_TRUE(absl::IsDataLoss(verify_audit({directory_.file("other")}).status()));
 }
 
 TEST_F(AuditLogTest, SaysSoWhenThereIsNoRoomAndGoesOnWhenThereIs) {

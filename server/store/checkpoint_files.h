@@ -2,12 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "server/store/owned_files.h"
 
 namespace lipofill::server {
 
@@ -50,18 +50,20 @@ class CheckpointFiles {
   /// DATA_LOSS unless the file is the one that was written: its hash, its simulation.
   absl::StatusOr<CheckpointContent> read(const std::string& simulation, const std::string& checkpoint,
                                          const std::string& sha256) const;
-  void remove(const std::string& simulation, const std::string& checkpoint) const;
-  void remove_simulation(const std::string& simulation) const;
-
-  using Known = std::function<bool(const std::string& simulation, const std::string& checkpoint)>;
+  void remove(const std::string& simulation, const std::string& checkpoint) const {
+    files_.remove(simulation, checkpoint);
+  }
+  void remove_simulation(const std::string& simulation) const { files_.remove_owner(simulation); }
   /// Removes files nobody knows: what a crash between two steps left. Returns how many.
-  int sweep(const Known& known) const;
+  int sweep(const OwnedFiles::Known& known) const { return files_.sweep(known); }
   /// The same for the files of one simulation.
-  int sweep_simulation(const std::string& simulation, const Known& known) const;
+  int sweep_simulation(const std::string& simulation, const OwnedFiles::Known& known) const {
+    return files_.sweep_owner(simulation, known);
+  }
 
  private:
-  explicit CheckpointFiles(std::filesystem::path root) : root_(std::move(root)) {}
-  std::filesystem::path root_;
+  explicit CheckpointFiles(OwnedFiles files) : files_(std::move(files)) {}
+  OwnedFiles files_;
 };
 
 }  // namespace lipofill::server

@@ -2,12 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "server/store/owned_files.h"
 
 namespace lipofill::server {
 
@@ -25,14 +25,14 @@ class ScanFiles {
   /// Waits until all that was written to a scan is on the medium.
   absl::Status flush(const std::string& patient, const std::string& scan) const;
   absl::StatusOr<std::string> read(const std::string& patient, const std::string& scan) const;
-  void remove(const std::string& patient, const std::string& scan) const;
-  void remove_patient(const std::string& patient) const;
+  void remove(const std::string& patient, const std::string& scan) const { files_.remove(patient, scan); }
+  void remove_patient(const std::string& patient) const { files_.remove_owner(patient); }
   /// Removes files nobody knows: what a crash between two steps left. Returns how many.
-  int sweep(const std::function<bool(const std::string& patient, const std::string& scan)>& known) const;
+  int sweep(const OwnedFiles::Known& known) const { return files_.sweep(known); }
 
  private:
-  explicit ScanFiles(std::filesystem::path root) : root_(std::move(root)) {}
-  std::filesystem::path root_;
+  explicit ScanFiles(OwnedFiles files) : files_(std::move(files)) {}
+  OwnedFiles files_;
 };
 
 }  // namespace lipofill::server

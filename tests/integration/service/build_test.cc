@@ -87,13 +87,7 @@ TEST_F(BuildTest, BuildsASquareAndShowsItsMeshes) {
   v1::DownloadModelMeshRequest download;
   download.set_name(model.name());
   auto stream = patients_->DownloadModelMesh(&context, download);
-  v1::MeshSlice slice;
-  std::map<std::string, uint64_t> rows;
-  while (stream->Read(&slice)) {
-    for (const auto& array : slice.arrays()) rows[array.name()] = array.shape(0);
-  }
-  EXPECT_TRUE(stream->Finish().ok());
-  EXPECT_TRUE(slice.last());
+  auto rows = read_mesh_rows(*stream);
   EXPECT_EQ(rows["skin.points"], 81u);
   EXPECT_EQ(rows["skin.cells"], 64u);
   EXPECT_EQ(rows["tissue.cells"], 128u);

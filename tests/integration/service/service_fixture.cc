@@ -81,6 +81,17 @@ int Watcher::drain(SeenFrame* last) {
   return n;
 }
 
+std::map<std::string, uint64_t> read_mesh_rows(grpc::ClientReader<v1::MeshSlice>& stream) {
+  v1::MeshSlice slice;
+  std::map<std::string, uint64_t> rows;
+  while (stream.Read(&slice)) {
+    for (const auto& array : slice.arrays()) rows[array.name()] = array.shape(0);
+  }
+  EXPECT_TRUE(stream.Finish().ok());
+  EXPECT_TRUE(slice.last());
+  return rows;
+}
+
 ServiceTest::ServiceTest(std::vector<std::string> arguments) : arguments_(std::move(arguments)) {
   connect();
 }

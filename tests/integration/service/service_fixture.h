@@ -38,6 +38,9 @@ inline bool has_ended(v1::Simulation::State state) {
 std::map<std::string, std::string> violations_of(const grpc::Status& status);
 std::map<std::string, std::string> violations_of(const google::rpc::Status& status);
 
+/// Reads a download of meshes to its end; the number of rows by name of the array.
+std::map<std::string, uint64_t> read_mesh_rows(grpc::ClientReader<v1::MeshSlice>& stream);
+
 /// What a viewer put together from the slices of one frame.
 struct SeenFrame {
   v1::FrameSlice slice;                          ///< of the last slice, without its arrays

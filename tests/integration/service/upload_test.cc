@@ -49,13 +49,7 @@ TEST_F(UploadTest, GivesTheSurfaceBackInMillimetres) {
   v1::DownloadScanMeshRequest request;
   request.set_name(scan.name());
   auto stream = patients_->DownloadScanMesh(&context, request);
-  v1::MeshSlice slice;
-  std::map<std::string, uint64_t> rows;
-  while (stream->Read(&slice)) {
-    for (const auto& array : slice.arrays()) rows[array.name()] = array.shape(0);
-  }
-  EXPECT_TRUE(stream->Finish().ok());
-  EXPECT_TRUE(slice.last());
+  auto rows = read_mesh_rows(*stream);
   EXPECT_EQ(rows, (std::map<std::string, uint64_t>{{"scan.points", 3600u}, {"scan.cells", 2u * 59 * 59}}));
 }
 

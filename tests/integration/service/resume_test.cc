@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "absl/strings/str_cat.h"
-#include "tests/integration/service/service_fixture.h"
+#include "tests/integration/service/run_fixture.h"
 
 namespace lipofill::testing {
 namespace {
@@ -13,39 +13,10 @@ namespace {
 using ::testing::HasSubstr;
 using Simulations = v1::SimulationService::Stub;
 
-class ResumeTest : public ServiceTest {
+class ResumeTest : public RunTest {
  protected:
   explicit ResumeTest(std::vector<std::string> arguments = {"--checkpoint-interval-s", "0.02"})
-      : ServiceTest(std::move(arguments)) {
-    create_patient();
-    model_ = build_square();
-  }
-  v1::Simulation create(double end_s, const std::string& id, bool start = true) {
-    v1::Simulation simulation;
-    const grpc::Status status = create_simulation(square_plan(model_.name(), end_s), id, start, simulation);
-    EXPECT_TRUE(status.ok()) << status.error_message();
-    return simulation;
-  }
-  template <typename Request, typename Method>
-  grpc::Status steer(Method method, const std::string& name, v1::Simulation* result = nullptr,
-                     const std::string& request_id = "") {
-    Request request;
-    request.set_name(name);
-    request.set_request_id(request_id);
-    v1::Simulation simulation;
-    const grpc::Status status = call(*simulations_, method, request, simulation);
-    if (result != nullptr) *result = simulation;
-    return status;
-  }
-  grpc::Status pause(const std::string& name, v1::Simulation* result = nullptr) {
-    return steer<v1::PauseSimulationRequest>(&Simulations::PauseSimulation, name, result);
-  }
-  grpc::Status resume(const std::string& name) {
-    return steer<v1::ResumeSimulationRequest>(&Simulations::ResumeSimulation, name);
-  }
-  grpc::Status stop(const std::string& name, v1::Simulation* result = nullptr, const std::string& request_id = "") {
-    return steer<v1::StopSimulationRequest>(&Simulations::StopSimulation, name, result, request_id);
-  }
+      : RunTest(std::move(arguments)) {}
   grpc::Status inject(const std::string& name, v1::Simulation& result, const std::string& request_id = "") {
     v1::InjectRequest request;
     request.set_name(name);
@@ -74,13 +45,6 @@ class ResumeTest : public ServiceTest {
   grpc::Status restore(const v1::RestoreSimulationRequest& request, v1::Simulation& result) {
     return call(*simulations_, &Simulations::RestoreSimulation, request, result);
   }
-  v1::GetSeriesResponse series(const std::string& name) {
-    v1::GetSeriesRequest request;
-    request.set_name(name);
-    v1::GetSeriesResponse response;
-    EXPECT_TRUE(call(*simulations_, &Simulations::GetSeries, request, response).ok());
-    return response;
-  }
   void expect_whole_series(const std::string& name, uint64_t first, uint64_t last) {
     const v1::GetSeriesResponse all = series(name);
     ASSERT_EQ(static_cast<uint64_t>(all.rows_size()), last - first + 1);
@@ -98,14 +62,6 @@ class ResumeTest : public ServiceTest {
     for (const auto& entry : std::filesystem::directory_iterator(files(id), none)) n += entry.is_regular_file();
     return n;
   }
-  v1::WatchRequest watch_request(const std::string& name) {
-    v1::WatchRequest request;
-    request.set_simulation(name);
-    request.set_delivery(v1::WatchRequest::EVERY);
-    return request;
-  }
-
-  v1::Model model_;
 };
 
 TEST_F(ResumeTest, ARunGoesOnAfterAHardDeathToTheSameEnd) {
@@ -183,7 +139,7 @@ TEST_F(ResumeTest, APausedRunIsTheSameAfterAHardDeath) {
 TEST_F(ResumeTest, SigtermLetsTheNextStartGoOn) {
   create(1000.0, "running");
   create(1000.0, "ready", false);
-  Watcher watcher(*channel_, watch_request("simulations/running"));
+  Watcher watcher(*channel_, watch_request("simulations/running", v1::WatchRequest::EVERY));
   SeenFrame frame;
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(watcher.next(frame));
   daemon_->signal(SIGTERM);
@@ -203,7 +159,7 @@ TEST_F(ResumeTest, SigtermLetsTheNextStartGoOn) {
 TEST_F(ResumeTest, FramesComeInANewEpochAndViewersGoOn) {
   create(1000.0, "x");
   SeenFrame frame;
-  v1::WatchRequest request = watch_request("simulations/x");
+  v1::WatchRequest request = watch_request("simulations/x", v1::WatchRequest::EVERY);
   {
     Watcher watcher(*channel_, request);
     for (int i = 0; i < 20; ++i) ASSERT_TRUE(watcher.next(frame));
@@ -336,7 +292,7 @@ TEST_F(ResumeTest, GoesBackToACheckpointAndOnFromThere) {
   restart_hard();
   ASSERT_TRUE(restore(request, again).ok());
   EXPECT_EQ(again.name(), branch.name());
-  ASSERT_TRUE(steer<v1::StartSimulationRequest>(&Simulations::StartSimulation, branch.name()).ok());
+  ASSERT_TRUE(act<v1::StartSimulationRequest>(&Simulations::StartSimulation, branch.name()).ok());
   await_step(branch.name(), later.step() + 5);
   restart_hard();
   EXPECT_EQ(await_end(branch.name()).state(), v1::Simulation::FINISHED);

@@ -24,9 +24,11 @@ class RunTest : public ServiceTest {
   }
 
   template <typename Request, typename Method>
-  grpc::Status act(Method method, const std::string& name, v1::Simulation* result = nullptr) {
+  grpc::Status act(Method method, const std::string& name, v1::Simulation* result = nullptr,
+                   const std::string& request_id = "") {
     Request request;
     request.set_name(name);
+    request.set_request_id(request_id);
     v1::Simulation simulation;
     const grpc::Status status = call(*simulations_, method, request, simulation);
     if (result != nullptr) *result = simulation;
@@ -41,8 +43,8 @@ class RunTest : public ServiceTest {
   grpc::Status resume(const std::string& name, v1::Simulation* result = nullptr) {
     return act<v1::ResumeSimulationRequest>(&v1::SimulationService::Stub::ResumeSimulation, name, result);
   }
-  grpc::Status stop(const std::string& name, v1::Simulation* result = nullptr) {
-    return act<v1::StopSimulationRequest>(&v1::SimulationService::Stub::StopSimulation, name, result);
+  grpc::Status stop(const std::string& name, v1::Simulation* result = nullptr, const std::string& request_id = "") {
+    return act<v1::StopSimulationRequest>(&v1::SimulationService::Stub::StopSimulation, name, result, request_id);
   }
   v1::GetSeriesResponse series(const std::string& name, uint64_t after = 0) {
     v1::GetSeriesRequest request;

@@ -16,7 +16,7 @@ namespace lipofill::coupling {
 ///
 /// with the degrees of freedom in a fill-reducing order and the pressures last: CHOLMOD's supernodal analysis, cut
 /// where the pressures begin. Immutable, made once a model and plan, and shared by all simulations of it. Checked by
-/// tests/unit/coupling/supernodal_factor_test.cc.
+/// tests/unit/coupling/coupled_factor_test.cc.
 class FactorAnalysis {
  public:
   /// Columns of L that share their rows below the diagonal: a dense panel (n_rows, n_columns), column-major, its first

@@ -5,6 +5,7 @@
 
 #include "core/coupling/algebra_threads.h"
 #include "core/coupling/blas.h"
+#include "core/coupling/panel_solve.h"
 
 namespace lipofill::coupling {
 namespace {
@@ -41,7 +42,8 @@ void PressureSolver::keep_mobility(const std::vector<Eigen::VectorXd>& mobility)
   keep_algebra_on_this_thread();
   compliance_.assign(*walls_.dense);
   lagged_scale_ = 1.0 / walls_.dense->diagonal().maxCoeff();
-  lagged_ = (lagged_scale_ * *walls_.dense).cast<float>();
+  lagged_.setZero(n_, n_ + 1);  // a column of padding
+  lagged_.leftCols(n_) = (lagged_scale_ * *walls_.dense).cast<float>();
   lagged_mobility_.resize(films_.size());
   int offset = 0;
   for (size_t f = 0; f < films_.size(); ++f) {
@@ -57,6 +59,7 @@ void PressureSolver::keep_mobility(const std::vector<Eigen::VectorXd>& mobility)
   }
   is_lagged_exact_ = blas::factor_lower(n_, lagged_.data(), n_);
   if (!is_lagged_exact_) lagged_.setIdentity();
+  PanelSolve<float>::invert_diagonal(lagged_.data(), n_, n_);
 }
 
 void PressureSolver::set_mobility(const Eigen::VectorXd& p) {
@@ -191,10 +194,13 @@ void PressureSolver::apply_lagged(const Eigen::VectorXd& r, Eigen::VectorXd& z) 
     z.setZero(n_);
     return;
   }
-  lagged_work_ = (r / size).cast<float>();
-  blas::solve_lower(n_, lagged_.data(), n_, lagged_work_.data(), false);
-  blas::solve_lower(n_, lagged_.data(), n_, lagged_work_.data(), true);
-  z = (size * lagged_scale_) * lagged_work_.cast<double>();
+  lagged_work_.resize(n_ + PanelSolve<float>::kPadding);
+  lagged_work_.head(n_) = (r / size).cast<float>();
+  const PanelSolve<float> factor(lagged_.data(), n_, n_);
+  factor.forward(lagged_work_.data());
+  lagged_work_.tail(PanelSolve<float>::kPadding).setZero();
+  factor.backward(lagged_work_.data());
+  z = (size * lagged_scale_) * lagged_work_.head(n_).cast<double>();
 }
 
 void PressureSolver::add_mobility(const Eigen::VectorXd& p, Eigen::VectorXd& product) const {

@@ -79,8 +79,8 @@ class PressureSolver {
   std::vector<const Eigen::SparseMatrix<double>*> matrices_;  ///< dt J of each film
   const std::vector<char>* held_ = nullptr;
   Eigen::MatrixXd system_;
-  SymmetricMatrix compliance_;                                ///< C of the lagged route
-  Eigen::MatrixXf lagged_;                                    ///< Cholesky factor of the scaled J0 + C
+  SymmetricMatrix compliance_;  ///< C of the lagged route
+  Eigen::MatrixXf lagged_;      ///< Cholesky factor of the scaled J0 + C, as PanelSolve reads it
   std::vector<Eigen::SparseMatrix<double>> lagged_mobility_;  ///< J0 of each film
   double lagged_scale_ = 1.0;
   bool is_lagged_exact_ = false;  ///< the factor is of J0 + C

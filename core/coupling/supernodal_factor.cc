@@ -6,6 +6,7 @@
 
 #include "core/coupling/algebra_threads.h"
 #include "core/coupling/blas.h"
+#include "core/coupling/panel_solve.h"
 
 namespace lipofill::coupling {
 
@@ -23,8 +24,8 @@ using Sparse = Eigen::SparseMatrix<double>;
 template <typename Scalar>
 SupernodalFactor<Scalar>::SupernodalFactor(std::shared_ptr<const FactorAnalysis> analysis)
     : analysis_(std::move(analysis)),
-      values_(analysis_->n_values()),
-      buffer_(static_cast<size_t>(analysis_->max_rows()) * analysis_->max_columns()),
+      values_(analysis_->n_values() + PanelSolve<Scalar>::kPadding),
+      buffer_(static_cast<size_t>(analysis_->max_rows()) * analysis_->max_columns() + PanelSolve<Scalar>::kPadding),
       position_(analysis_->n_dofs() + analysis_->n_cells()),
       relative_(analysis_->max_rows()),
       scale_(analysis_->n_dofs()),
@@ -79,6 +80,7 @@ bool SupernodalFactor<Scalar>::factorise(const Sparse& s, const Sparse& b) {
     if (below > 0) {
       blas::solve_right_transposed(below, node.n_columns, panel, node.n_rows, panel + node.n_columns, node.n_rows);
     }
+    PanelSolve<Scalar>::invert_diagonal(panel, node.n_rows, node.n_columns);
   }
   return true;
 }
@@ -185,15 +187,13 @@ void SupernodalFactor<Scalar>::solve_forward(const Eigen::VectorXd& r, Eigen::Ve
   forward_.tail(analysis_->n_cells()).setZero();
   for (const Supernode& node : analysis_->supernodes()) {
     const int* rows = analysis_->rows().data() + node.rows;
-    const Scalar* panel = values_of(node);
-    Scalar* y = forward_.data() + node.first_column;
-    blas::solve_lower(node.n_columns, panel, node.n_rows, y, false);
     const int below = node.n_rows - node.n_columns;
-    using Map = Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>, 0, Eigen::OuterStride<>>;
-    Eigen::Map<Vector> product(buffer_.data(), below);
-    product.noalias() = Map(panel + node.n_columns, below, node.n_columns, Eigen::OuterStride<>(node.n_rows)) *
-                        Eigen::Map<const Vector>(y, node.n_columns);
-    for (int k = 0; k < below; ++k) forward_[rows[node.n_columns + k]] -= product[k];
+    Scalar* t = buffer_.data();
+    std::copy_n(forward_.data() + node.first_column, node.n_columns, t);
+    std::fill_n(t + node.n_columns, below, Scalar(0));
+    PanelSolve(values_of(node), node.n_rows, node.n_columns).forward(t);
+    std::copy_n(t, node.n_columns, forward_.data() + node.first_column);
+    for (int k = node.n_columns; k < node.n_rows; ++k) forward_[rows[k]] += t[k];
   }
   gap_response = -forward_.tail(analysis_->n_cells()).template cast<double>() / pressure_scale_;
 }
@@ -206,15 +206,11 @@ void SupernodalFactor<Scalar>::solve_backward(const Eigen::VectorXd& pressure, E
   solution_.tail(analysis_->n_cells()) = -(pressure / pressure_scale_).template cast<Scalar>();
   for (auto node = analysis_->supernodes().rbegin(); node != analysis_->supernodes().rend(); ++node) {
     const int* rows = analysis_->rows().data() + node->rows;
-    const Scalar* panel = values_of(*node);
-    Scalar* y = solution_.data() + node->first_column;
-    const int below = node->n_rows - node->n_columns;
-    Eigen::Map<Vector> gathered(buffer_.data(), below);
-    for (int k = 0; k < below; ++k) gathered[k] = solution_[rows[node->n_columns + k]];
-    using Map = Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>, 0, Eigen::OuterStride<>>;
-    Eigen::Map<Vector>(y, node->n_columns).noalias() -=
-        Map(panel + node->n_columns, below, node->n_columns, Eigen::OuterStride<>(node->n_rows)).transpose() * gathered;
-    blas::solve_lower(node->n_columns, panel, node->n_rows, y, true);
+    Scalar* t = buffer_.data();
+    for (int k = 0; k < node->n_rows; ++k) t[k] = solution_[rows[k]];
+    std::fill_n(t + node->n_rows, PanelSolve<Scalar>::kPadding, Scalar(0));
+    PanelSolve(values_of(*node), node->n_rows, node->n_columns).backward(t);
+    std::copy_n(t, node->n_columns, solution_.data() + node->first_column);
   }
   x.resize(n_dofs);
   for (int k = 0; k < n_dofs; ++k) {

@@ -13,7 +13,7 @@ namespace lipofill::coupling {
 /// scaled to a unit diagonal, so that units and contrasts of stiffness cost no digits. C is a sum of squares, without
 /// cancellation.
 ///
-/// Sums in a fixed order on the calling thread. Checked by tests/unit/coupling/supernodal_factor_test.cc against dense
+/// Sums in a fixed order on the calling thread. Checked by tests/unit/coupling/coupled_factor_test.cc against dense
 /// algebra and CHOLMOD.
 template <typename Scalar>
 class SupernodalFactor {

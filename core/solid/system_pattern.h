@@ -9,7 +9,7 @@ namespace lipofill::solid {
 
 /// Numbering of the degrees of freedom and the lower triangle they couple in: node by node, fixed components left out,
 /// every two nodes of a hexahedron coupled, and every two of a group. Depends on its arguments only; time and memory
-/// linear in the hexahedra. Checked by tests/unit/solid/system_pattern_test.cc.
+/// linear in the hexahedra. Checked by tests/unit/solid/element_batch_test.cc.
 class SystemPattern {
  public:
   SystemPattern(int n_nodes, const std::vector<std::array<int, 8>>& hexahedra,

@@ -34,6 +34,8 @@ void factor(benchmark::State& state, Precision precision) {
     if (!factor.factorise(micro.step.s, micro.step.b, precision)) state.SkipWithError("not positive definite");
   }
   count_unknowns(state, micro);
+  state.counters["flops"] =
+      benchmark::Counter(factor.analysis().operations(), benchmark::Counter::kIsIterationInvariantRate);
 }
 
 /// The gap's response to a force, and the displacement by a pressure.
@@ -47,6 +49,8 @@ void solve(benchmark::State& state, Precision precision) {
     factor.solve_displacement(micro.parts->pressure(), dx);
   }
   count_unknowns(state, micro);
+  const int64_t bytes_of_a_value = precision == Precision::kSingle ? sizeof(float) : sizeof(double);
+  state.SetBytesProcessed(2 * state.iterations() * factor.analysis().n_values() * bytes_of_a_value);
 }
 
 /// Thickness and pressure of the fat after a step, from those before it, over tissue that gives way.

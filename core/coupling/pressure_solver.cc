@@ -42,8 +42,9 @@ void PressureSolver::keep_mobility(const std::vector<Eigen::VectorXd>& mobility)
   keep_algebra_on_this_thread();
   compliance_.assign(*walls_.dense);
   lagged_scale_ = 1.0 / walls_.dense->diagonal().maxCoeff();
-  lagged_.setZero(n_, n_ + 1);  // a column of padding
-  lagged_.leftCols(n_) = (lagged_scale_ * *walls_.dense).cast<float>();
+  if (lagged_.rows() != n_) lagged_.setZero(n_, n_ + 1);
+  for (int c = 0; c < n_; ++c)
+    lagged_.col(c).tail(n_ - c) = (lagged_scale_ * walls_.dense->col(c).tail(n_ - c)).cast<float>();
   lagged_mobility_.resize(films_.size());
   int offset = 0;
   for (size_t f = 0; f < films_.size(); ++f) {

@@ -114,6 +114,8 @@ class CoupledStep {
   void take_up_mobility(const SimulationState& state);
   void renew_mobility(SimulationState& state, const coupling::FilmSolution& at);
   double measure_factor_error();
+  void predict_rate(const SimulationState& from, double dt, Eigen::VectorXd FilmState::*last,
+                    Eigen::VectorXd FilmState::*before, Eigen::VectorXd& rate);
   void predict(const SimulationState& from, double dt, SimulationState& next, coupling::FilmSolution& solution);
   void set_gap_without_pressure(const coupling::FilmSolution& solution);
   void add_coupling_force(const Eigen::VectorXd& pressure, Eigen::VectorXd& force);
@@ -193,7 +195,7 @@ class CoupledStep {
     Eigen::VectorXd displacement;          ///< of the degrees of freedom
     Eigen::VectorXd of_films;              ///< force of the films
     Eigen::VectorXd moved;                 ///< since the start of the step, of the degrees of freedom
-    Eigen::VectorXd rate;                  ///< of all cells
+    Eigen::VectorXd rate, earlier_rate;    ///< of all cells
     std::vector<Eigen::VectorXd> mobility;
     Eigen::VectorXd thickness, edge_thickness, viscous, height;  ///< of one film
   };

@@ -197,6 +197,8 @@ SimulationState CoupledStep::rest_state() const {
     film.velocity.setZero(grid.n_edges());
     film.volume_rate.setZero(grid.n_cells());
     film.pressure_rate.setZero(grid.n_cells());
+    film.earlier_volume_rate.setZero(grid.n_cells());
+    film.earlier_pressure_rate.setZero(grid.n_cells());
     if (has_lagged_mobility_) film.factored_mobility.setZero(projections_[f]->pattern().nonZeros());
     if (fat_.is_elastic()) film.wall_stress.setZero(grid.n_edges());
     if (films_[f].connective_tissue.entry_pressure > 0.0) film.is_entered.setZero(grid.n_cells());

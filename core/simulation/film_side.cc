@@ -101,7 +101,7 @@ void CoupledStep::move_freely(size_t f, const FilmState& film, const film::Fat& 
 coupling::FilmTolerance CoupledStep::film_tolerance() const {
   if (cell_of_tissue_.empty()) return {};
   if (is_implicit()) return {1e-5, 1e-6};
-  return {1e-8, 1e-9};
+  return {1e-7, 1e-8};
 }
 
 /// The compliance of every cell's walls, in the order of all cells.
@@ -182,6 +182,8 @@ void CoupledStep::finish_films(const SimulationState& from, double dt, const cou
     film.volume = solution.volume.segment(cell_offset_[f], grid.n_cells());
     projection.compute_velocity(solution.flux[f], film.velocity);
     projection.compute_wall_stress(film.pressure, film.wall_stress);
+    film.earlier_volume_rate = from.films[f].volume_rate;
+    film.earlier_pressure_rate = from.films[f].pressure_rate;
     film.volume_rate = (film.volume - from.films[f].volume) / dt;
     film.pressure_rate = (film.pressure - from.films[f].pressure) / dt;
     const double injection_work = film.pressure.dot(projection.input().injected);

@@ -9,12 +9,14 @@ namespace lipofill::simulation {
 
 /// A film's unknowns, and what it remembers.
 struct FilmState {
-  Eigen::VectorXd volume;         ///< V [m3] (n_cells)
-  Eigen::VectorXd pressure;       ///< p [Pa] (n_cells)
-  Eigen::VectorXd velocity;       ///< U [m2/s] (n_edges)
-  Eigen::VectorXd volume_rate;    ///< dV/dt of the last step [m3/s] (n_cells)
-  Eigen::VectorXd pressure_rate;  ///< dp/dt of the last step [Pa/s] (n_cells)
-  Eigen::VectorXd wall_stress;    ///< T of film::FilmStepInput [Pa m] (n_edges); empty: fat is not elastic
+  Eigen::VectorXd volume;                 ///< V [m3] (n_cells)
+  Eigen::VectorXd pressure;               ///< p [Pa] (n_cells)
+  Eigen::VectorXd velocity;               ///< U [m2/s] (n_edges)
+  Eigen::VectorXd volume_rate;            ///< dV/dt of the last step [m3/s] (n_cells)
+  Eigen::VectorXd pressure_rate;          ///< dp/dt of the last step [Pa/s] (n_cells)
+  Eigen::VectorXd earlier_volume_rate;    ///< of the step before the last [m3/s] (n_cells)
+  Eigen::VectorXd earlier_pressure_rate;  ///< the same [Pa/s] (n_cells)
+  Eigen::VectorXd wall_stress;            ///< T of film::FilmStepInput [Pa m] (n_edges); empty: fat is not elastic
   /// dt J when it was last kept, what solves of many cells are preconditioned with; empty: few cells.
   Eigen::VectorXd factored_mobility;
   Eigen::VectorXd is_entered;  ///< 1 where fat has parted the connective tissue, else 0 (n_cells); empty: all open

@@ -9,7 +9,7 @@
 namespace lipofill::simulation {
 namespace {
 
-constexpr char kMagic[] = "lipofill-state-5";
+constexpr char kMagic[] = "lipofill-state-6";
 
 /// Visits every number of the mutable state in a fixed order, so that writing, reading and hashing cannot disagree.
 template <typename Visitor>
@@ -35,9 +35,9 @@ void visit_state(SimulationState& state, Visitor& visit) {
   visit.array(state.factored_positions.data(), state.factored_positions.size());
   visit.array(state.factored_springs.data(), state.factored_springs.size());
   for (FilmState& film : state.films) {
-    for (Eigen::VectorXd* values :
-         {&film.volume, &film.pressure, &film.velocity, &film.volume_rate, &film.pressure_rate, &film.wall_stress,
-          &film.factored_mobility, &film.is_entered}) {
+    for (Eigen::VectorXd* values : {&film.volume, &film.pressure, &film.velocity, &film.volume_rate,
+                                    &film.pressure_rate, &film.earlier_volume_rate, &film.earlier_pressure_rate,
+                                    &film.wall_stress, &film.factored_mobility, &film.is_entered}) {
       visit.array(values->data(), values->size());
     }
   }

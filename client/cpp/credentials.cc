@@ -22,11 +22,16 @@ std::string variable(const char* name) {
   return value != nullptr ? value : "";
 }
 
-absl::Status take_file(const std::string& path, std::string& text) {
+/// gRPC itself says no more of a file without one than that nobody answers.
+absl::Status take_pem(const std::string& path, const char* what, const char* mark, std::string& text) {
   if (path.empty()) return absl::OkStatus();
   auto read = read_text_file(path);
-  if (read.ok()) text = *std::move(read);
-  return read.status();
+  if (!read.ok()) return read.status();
+  if (!absl::StrContains(*read, mark)) {
+    return absl::InvalidArgumentError(absl::StrCat(path, " holds no ", what, " in PEM, which begins with -----BEGIN"));
+  }
+  text = *std::move(read);
+  return absl::OkStatus();
 }
 
 absl::StatusOr<std::string> read_token(const std::string& path) {
@@ -93,9 +98,9 @@ absl::StatusOr<Credentials> read_credentials(const CredentialFiles& files, const
   Credentials credentials;
   credentials.token_file = files.token;
   absl::Status read = files.token.empty() ? absl::OkStatus() : read_token(files.token).status();
-  read.Update(take_file(files.tls_ca, credentials.ca_pem));
-  read.Update(take_file(files.tls_cert, credentials.cert_pem));
-  read.Update(take_file(files.tls_key, credentials.key_pem));
+  read.Update(take_pem(files.tls_ca, "certificate", "BEGIN CERTIFICATE-----", credentials.ca_pem));
+  read.Update(take_pem(files.tls_cert, "certificate", "BEGIN CERTIFICATE-----", credentials.cert_pem));
+  read.Update(take_pem(files.tls_key, "private key", "PRIVATE KEY-----", credentials.key_pem));
   if (!read.ok()) return read;
   return credentials;
 }

@@ -24,17 +24,20 @@ class CredentialsTest : public ::testing::Test {
     EXPECT_TRUE(credentials.ok() || absl::IsInvalidArgument(credentials.status()));
     return credentials.ok() ? "" : std::string(credentials.status().message());
   }
+  const std::string certificate_ = "-----BEGIN CERTIFICATE-----\nCERT";
   lipofill::testing::TemporaryDirectory directory_;
 };
 
 TEST_F(CredentialsTest, AreWhatTheFilesHold) {
-  const auto credentials = read_credentials(
-      {write("token", "a.b.c\n"), write("ca", "CA"), write("cert", "CERT"), write("key", "KEY")}, "far:1");
+  const std::string key = "-----BEGIN EC PRIVATE KEY-----\nKEY";
+  const auto credentials = read_credentials({write("token", "a.b.c\n"), write("ca", certificate_),
+                                             write("cert", "subject\n" + certificate_), write("key", key)},
+                                            "far:1");
   ASSERT_TRUE(credentials.ok()) << credentials.status();
   EXPECT_EQ(credentials->token_file, directory_.file("token"));
-  EXPECT_EQ(credentials->ca_pem, "CA");
-  EXPECT_EQ(credentials->cert_pem, "CERT");
-  EXPECT_EQ(credentials->key_pem, "KEY");
+  EXPECT_EQ(credentials->ca_pem, certificate_);
+  EXPECT_EQ(credentials->cert_pem, "subject\n" + certificate_);
+  EXPECT_EQ(credentials->key_pem, key);
   EXPECT_EQ(refusal({}), "");
 }
 
@@ -49,7 +52,7 @@ TEST_F(CredentialsTest, ATokenDoesNotLeaveTheMachineUnencrypted) {
 }
 
 TEST_F(CredentialsTest, MistakesAreNamed) {
-  const std::string pem = write("pem", "PEM");
+  const std::string pem = write("pem", certificate_);
   EXPECT_THAT(refusal({.tls_ca = pem, .tls_cert = pem}), HasSubstr("both --tls-cert and --tls-key"));
   EXPECT_THAT(refusal({.tls_cert = pem, .tls_key = pem}), HasSubstr("needs --tls-ca"));
   EXPECT_THAT(refusal({.tls_ca = directory_.file("none")}), HasSubstr(directory_.file("none")));
@@ -57,6 +60,8 @@ TEST_F(CredentialsTest, MistakesAreNamed) {
   for (const char* bad : {"", "\n", "two tokens", "a\nb"}) {
     EXPECT_THAT(refusal({.token = write("bad", bad), .tls_ca = pem}), HasSubstr("one token and nothing else")) << bad;
   }
+  EXPECT_THAT(refusal({.tls_ca = write("bad", "solid half_face\n")}), HasSubstr("holds no certificate in PEM"));
+  EXPECT_THAT(refusal({.tls_ca = pem, .tls_cert = pem, .tls_key = pem}), HasSubstr("holds no private key in PEM"));
 }
 
 TEST_F(CredentialsTest, ComeFromTheEnvironment) {

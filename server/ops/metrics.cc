@@ -71,6 +71,10 @@ Metrics::Metrics()
   auto& iterations = counters(registry_, "lipofill_solver_iterations_total", "Iterations of the solvers, by kind");
   const char* const kinds[] = {"film", "newton", "conjugate_gradient"};
   for (size_t i = 0; i < iterations_.size(); ++i) iterations_[i] = &iterations.Add({{"kind", kinds[i]}});
+  // From the start, so that the first refusal is an increase.
+  for (const char* reason : {"NO_CREDENTIALS", "ROLE_TOO_LOW", "PATIENT_NOT_YOURS"}) {
+    calls_refused_.Add({{"reason", reason}});
+  }
 }
 
 void Metrics::count_step(const StepFigures& step) {

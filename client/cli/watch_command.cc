@@ -105,7 +105,8 @@ void add_watch_command(CLI::App& root, Application& application) {
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--max-rate-hz", options->max_rate_hz,
-                   "at most so many frames a second of the clock; 0: no bound; default: 60, no bound with --every")
+                   "at most so many frames a second of the clock; 0: no bound; default: 60, less of many viewers; no "
+                   "bound with --every")
       ->check(CLI::Range(0.0, 1000.0));
   command->add_flag("--compact", options->compact, "16-bit fields: half the bytes, good to 1/130,000 of their range");
   command->add_flag("--every", options->every, "no frame is left out, however slow the reader");

@@ -37,13 +37,6 @@ void check_rate(const v1::WatchRequest& request, FieldViolations& violations) {
   }
 }
 
-/// As fast as screens are, where nothing else is asked for.
-double rate_of(const v1::WatchRequest& request) {
-  constexpr double kScreenRate = 60.0;
-  if (request.has_max_rate_hz()) return request.max_rate_hz();
-  return request.delivery() == v1::WatchRequest::EVERY ? 0.0 : kScreenRate;
-}
-
 void check_acknowledgement(const v1::WatchRequest& request, FieldViolations& violations) {
   constexpr double kMostFrames = 1000.0;
   violations.check_range("max_unacknowledged_frames", request.max_unacknowledged_frames(), 0.0, kMostFrames, "frames");
@@ -81,7 +74,8 @@ absl::StatusOr<ViewerOptions> to_viewer_options(const v1::WatchRequest& request)
   options.selection.meshes.assign(request.meshes().begin(), request.meshes().end());
   options.selection.fields.assign(request.fields().begin(), request.fields().end());
   options.selection.quantised = request.field_type() == v1::UINT16;
-  options.max_rate_hz = rate_of(request);
+  options.max_rate_hz = request.max_rate_hz();
+  options.shares_rate = options.delivery == Delivery::kLatest && !request.has_max_rate_hz();
   options.max_unacknowledged = request.max_unacknowledged_frames();
   options.interval_s = request.interval_ms() * 1e-3;
   options.seen_epoch = request.seen_epoch();

@@ -181,6 +181,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   SessionView full_view();
   std::shared_ptr<const Topology> topology();
   std::shared_ptr<const Frame> make_frame(const std::vector<std::string>& meshes, bool end);
+  void share_rate();
   void show_to_viewers(bool at_rest);
   void show_again_from_here();
   Clock::time_point due_time() const;

@@ -1,5 +1,6 @@
 // What a session shows: its meshes, and frames to whoever watches.
 
+#include <algorithm>
 #include <exception>
 #include <set>
 
@@ -23,7 +24,9 @@ void Session::watch(std::shared_ptr<Viewer> viewer) {
       viewer->show_topology(meshes);
       if (preview_frame_ != nullptr) viewer->offer(preview_frame_);
       viewer->offer(frame);
-      if (!frame->end) viewers_.push_back(viewer);
+      if (frame->end) return;
+      viewers_.push_back(viewer);
+      share_rate();
     } catch (const std::exception& error) {
       viewer->close(absl::InternalError(absl::StrCat("simulations/", options_.id, ": ", error.what())));
     }
@@ -33,7 +36,10 @@ void Session::watch(std::shared_ptr<Viewer> viewer) {
 void Session::unwatch(std::shared_ptr<Viewer> viewer) {
   --watching_;
   last_asked_ = Clock::now();
-  post([this, viewer] { std::erase(viewers_, viewer); });
+  post([this, viewer] {
+    std::erase(viewers_, viewer);
+    share_rate();
+  });
 }
 
 void Session::capture(std::vector<std::string> meshes, CaptureReply reply) {
@@ -77,9 +83,22 @@ std::shared_ptr<const Frame> Session::make_frame(const std::vector<std::string>&
   return frame;
 }
 
+/// Viewers who ask for no rate get what screens show, and many of them no more together than the daemon sends for a
+/// twentieth of a core.
+void Session::share_rate() {
+  constexpr double kScreenRate = 60.0;
+  constexpr double kSharedRate = 1000.0;
+  const auto sharing = std::count_if(viewers_.begin(), viewers_.end(), [](const auto& v) { return v->shares_rate(); });
+  const double rate_hz = std::min(kScreenRate, kSharedRate / static_cast<double>(std::max<std::ptrdiff_t>(sharing, 1)));
+  for (const auto& viewer : viewers_) {
+    if (viewer->shares_rate()) viewer->set_max_rate(rate_hz);
+  }
+}
+
 /// @param at_rest  no step follows soon
 void Session::show_to_viewers(bool at_rest) {
-  std::erase_if(viewers_, [](const auto& viewer) { return viewer->closed(); });
+  const size_t closed = std::erase_if(viewers_, [](const auto& viewer) { return viewer->closed(); });
+  if (closed > 0) share_rate();
   std::vector<std::shared_ptr<Viewer>> due;
   std::set<std::string> meshes;
   for (const auto& viewer : viewers_) {

@@ -33,7 +33,10 @@ std::vector<std::string> default_meshes(const std::vector<std::string>& known, c
 }  // namespace
 
 Viewer::Viewer(ViewerOptions options, std::function<void()> wake)
-    : options_(std::move(options)), wake_(std::move(wake)), selection_(options_.selection) {
+    : options_(std::move(options)),
+      wake_(std::move(wake)),
+      selection_(options_.selection),
+      max_rate_hz_(options_.max_rate_hz) {
   sort_out(selection_.fields);
 }
 
@@ -64,6 +67,11 @@ absl::Status Viewer::check_fields(const std::vector<std::string>& known) const {
     }
   }
   return absl::OkStatus();
+}
+
+void Viewer::set_max_rate(double max_rate_hz) {
+  const std::lock_guard lock(mutex_);
+  max_rate_hz_ = max_rate_hz;
 }
 
 void Viewer::show_topology(std::shared_ptr<const Topology> topology) {
@@ -163,8 +171,8 @@ FrameToSend Viewer::take_frame(Clock::time_point now) {
   sent_epoch_ = next.frame->epoch;
   sent_sequence_ = next.frame->sequence;
   if (options_.max_unacknowledged > 0) unacknowledged_.push_back(sent_sequence_);
-  if (options_.max_rate_hz > 0.0) {
-    const std::chrono::duration<double> period(1.0 / options_.max_rate_hz);
+  if (max_rate_hz_ > 0.0) {
+    const std::chrono::duration<double> period(1.0 / max_rate_hz_);
     next_due_ = now + std::chrono::ceil<Clock::duration>(period);
   }
   return next;

@@ -24,6 +24,7 @@ struct ViewerOptions {
   Selection selection;
   double interval_s = 0.0;   ///< simulated time between frames; 0: every step
   double max_rate_hz = 0.0;  ///< frames a second of the clock, kLatest; 0: no bound
+  bool shares_rate = false;  ///< max_rate_hz is what the session gives it
   uint64_t seen_epoch = 0;
   uint64_t seen_sequence = 0;
   size_t max_queued_bytes = size_t{64} << 20;  ///< kEvery
@@ -74,6 +75,8 @@ class Viewer {
   /// Once the meshes are known: whether all fields asked for are among those of a frame, by full name.
   absl::Status check_fields(const std::vector<std::string>& known) const;
   const Selection& selection() const { return selection_; }
+  bool shares_rate() const { return options_.shares_rate; }
+  void set_max_rate(double max_rate_hz);
 
   /// From the client: the frame of this sequence and all before it have been taken. INVALID_ARGUMENT for one that was
   /// not sent.
@@ -100,7 +103,8 @@ class Viewer {
   size_t queued_bytes_ = 0;
   uint64_t skipped_ = 0;
   double next_due_s_ = 0.0;
-  Clock::time_point next_due_{};  ///< by max_rate_hz
+  double max_rate_hz_ = 0.0;
+  Clock::time_point next_due_{};  ///< by max_rate_hz_
   std::optional<uint64_t> offered_sequence_;
   std::deque<uint64_t> unacknowledged_;  ///< sequences, where max_unacknowledged is set
   uint64_t sent_epoch_ = 0;

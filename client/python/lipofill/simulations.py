@@ -167,7 +167,7 @@ class Simulation:
         interval_ms : float
             Simulated time between frames; default: every step.
         max_rate_hz : float
-            LATEST: at most so many frames a second of the clock; 0: no bound; default 60.
+            LATEST: at most so many frames a second of the clock; 0: no bound; default 60, less of many viewers.
         compact : bool
             Half the bytes: 16-bit codes, decoded to float32 with Array.max_error stated.
         acknowledge : int

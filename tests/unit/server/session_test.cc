@@ -98,6 +98,38 @@ TEST_F(SessionTest, ShowsFramesUntilTheEndAndAfterIt) {
   EXPECT_TRUE(std::get<FrameToSend>(late->take()).frame->end);
 }
 
+/// Sixteen and two thirds viewers at 60 Hz are 1000 frames a second: more than that share them.
+TEST_F(SessionTest, ManyViewersShareARateUnlessTheyAskForOne) {
+  const auto s = session("a", 1e6);
+  const Viewer::Clock::time_point start{std::chrono::seconds(1000)};
+  const auto interval_ms = [&](Viewer& viewer) {
+    EXPECT_TRUE(inspect(*s).ok()) << "commands are carried out in order";
+    EXPECT_TRUE(std::holds_alternative<TopologyToSend>(viewer.take(start)));
+    EXPECT_TRUE(std::holds_alternative<FrameToSend>(viewer.take(start)));
+    int wait = 0;
+    while (!viewer.wants(0.0, false, start + std::chrono::milliseconds(wait))) ++wait;
+    return wait;
+  };
+  ViewerOptions options;
+  options.shares_rate = true;
+  std::vector<std::shared_ptr<Viewer>> viewers;
+  for (int k = 0; k < 40; ++k) {
+    viewers.push_back(std::make_shared<Viewer>(options, [] {}));
+    s->watch(viewers.back());
+  }
+  ViewerOptions own;
+  own.max_rate_hz = 200.0;
+  const auto fast = std::make_shared<Viewer>(own, [] {});
+  s->watch(fast);
+  EXPECT_EQ(interval_ms(*viewers.back()), 40);
+  EXPECT_EQ(interval_ms(*fast), 5);
+  while (viewers.size() > 10) {
+    s->unwatch(viewers.back());
+    viewers.pop_back();
+  }
+  EXPECT_EQ(interval_ms(*viewers.front()), 17);
+}
+
 TEST_F(SessionTest, StopsWhileItWaitsForRealTime) {
   const auto s = session("a", 1e6, true);
   ASSERT_TRUE(start(*s).ok());

@@ -27,6 +27,23 @@ class PanelSolveTest : public testing::Test {
     Eigen::Map<Matrix>(stored_.data(), n_rows, n_columns) = panel_;
     PanelSolve<Scalar>::invert_diagonal(stored_.data(), n_rows, n_columns);
   }
+  /// Every remainder of the columns by four and of the rows by a cache line.
+  template <typename Check>
+  void for_each_size(Check check) {
+    for (const int n_rows : {1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 33, 64, 200}) {
+      for (const int n_columns : {1, 2, 3, 4, 5, 6, 7, 8, 9, 16, 64, 200}) {
+        if (n_columns > n_rows) continue;
+        SCOPED_TRACE(testing::Message() << n_rows << " x " << n_columns);
+        make(n_rows, n_columns);
+        check(n_rows, n_columns, random(n_rows));
+      }
+    }
+  }
+  static Vector pad(Vector t, Scalar padding) {
+    t.conservativeResize(t.size() + kPadding);
+    t.tail(kPadding).setConstant(padding);
+    return t;
+  }
   Vector random(int n) {
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     return Vector::NullaryExpr(n, [&] { return static_cast<Scalar>(uniform(generator_)); });
@@ -47,50 +64,29 @@ class PanelSolveTest : public testing::Test {
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(PanelSolveTest, Scalars);
 
-/// Every remainder of the columns by four and of the rows by a cache line.
-constexpr int kRows[] = {1, 2, 3, 4, 5, 7, 8, 9, 15, 16, 17, 31, 33, 64, 200};
-constexpr int kColumns[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 16, 64, 200};
-
 TYPED_TEST(PanelSolveTest, ForwardIsThatOfDenseAlgebra) {
-  for (const int n_rows : kRows) {
-    for (const int n_columns : kColumns) {
-      if (n_columns > n_rows) continue;
-      this->make(n_rows, n_columns);
-      const auto right = this->random(n_rows);
-      auto t = right;
-      t.conservativeResize(n_rows + this->kPadding);
-      t.tail(this->kPadding).setOnes();
-      this->solve().forward(t.data());
-      const Eigen::VectorXd exact = right.template cast<double>();
-      const Eigen::VectorXd top = this->triangle().template triangularView<Eigen::Lower>().solve(exact.head(n_columns));
-      const Eigen::VectorXd bottom = exact.tail(n_rows - n_columns) - this->below() * top;
-      EXPECT_LE((t.head(n_columns).template cast<double>() - top).norm(), this->kTolerance * top.norm())
-          << n_rows << " x " << n_columns;
-      EXPECT_LE((t.segment(n_columns, n_rows - n_columns).template cast<double>() - bottom).norm(),
-                this->kTolerance * exact.norm())
-          << n_rows << " x " << n_columns;
-    }
-  }
+  this->for_each_size([this](int n_rows, int n_columns, const auto& right) {
+    auto t = this->pad(right, TypeParam(1));
+    this->solve().forward(t.data());
+    const Eigen::VectorXd exact = right.template cast<double>();
+    const Eigen::VectorXd top = this->triangle().template triangularView<Eigen::Lower>().solve(exact.head(n_columns));
+    const Eigen::VectorXd bottom = exact.tail(n_rows - n_columns) - this->below() * top;
+    EXPECT_LE((t.head(n_columns).template cast<double>() - top).norm(), this->kTolerance * top.norm());
+    EXPECT_LE((t.segment(n_columns, n_rows - n_columns).template cast<double>() - bottom).norm(),
+              this->kTolerance * exact.norm());
+  });
 }
 
 TYPED_TEST(PanelSolveTest, BackwardIsThatOfDenseAlgebra) {
-  for (const int n_rows : kRows) {
-    for (const int n_columns : kColumns) {
-      if (n_columns > n_rows) continue;
-      this->make(n_rows, n_columns);
-      const auto right = this->random(n_rows);
-      auto t = right;
-      t.conservativeResize(n_rows + this->kPadding);
-      t.tail(this->kPadding).setZero();
-      this->solve().backward(t.data());
-      const Eigen::VectorXd exact = right.template cast<double>();
-      const Eigen::VectorXd top = this->triangle().transpose().template triangularView<Eigen::Upper>().solve(
-          exact.head(n_columns) - this->below().transpose() * exact.tail(n_rows - n_columns));
-      EXPECT_LE((t.head(n_columns).template cast<double>() - top).norm(), this->kTolerance * top.norm())
-          << n_rows << " x " << n_columns;
-      EXPECT_EQ(t.segment(n_columns, n_rows - n_columns), right.tail(n_rows - n_columns));
-    }
-  }
+  this->for_each_size([this](int n_rows, int n_columns, const auto& right) {
+    auto t = this->pad(right, TypeParam(0));
+    this->solve().backward(t.data());
+    const Eigen::VectorXd exact = right.template cast<double>();
+    const Eigen::VectorXd top = this->triangle().transpose().template triangularView<Eigen::Upper>().solve(
+        exact.head(n_columns) - this->below().transpose() * exact.tail(n_rows - n_columns));
+    EXPECT_LE((t.head(n_columns).template cast<double>() - top).norm(), this->kTolerance * top.norm());
+    EXPECT_EQ(t.segment(n_columns, n_rows - n_columns), right.tail(n_rows - n_columns));
+  });
 }
 
 /// What is above the diagonal and behind the panel may be anything finite.

@@ -60,7 +60,7 @@ struct Reader {
   bool ok = true;
   void raw(void* out, size_t size) {
     ok = ok && bytes.size() >= size;
-    if (!ok) return;
+    if (!ok || size == 0) return;  // memcpy must not be given what an empty array begins with
     std::memcpy(out, bytes.data(), size);
     bytes.remove_prefix(size);
   }

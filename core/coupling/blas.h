@@ -18,11 +18,6 @@ void dtrsm_(const char*, const char*, const char*, const char*, const int*, cons
             const int*, double*, const int*);
 void spotrf_(const char*, const int*, float*, const int*, int*);
 void dpotrf_(const char*, const int*, double*, const int*, int*);
-void sgemv_(const char*, const int*, const int*, const float*, const float*, const int*, const float*, const int*,
-            const float*, float*, const int*);
-void dgemv_(const char*, const int*, const int*, const double*, const double*, const int*, const double*, const int*,
-            const double*, double*, const int*);
-void strsv_(const char*, const char*, const char*, const int*, const float*, const int*, float*, const int*);
 void dtrsv_(const char*, const char*, const char*, const int*, const double*, const int*, double*, const int*);
 }
 
@@ -69,10 +64,6 @@ inline bool factor_lower(int n, double* a, int lda) {
 }
 
 /// x <- L^-1 x, or L^-T x.
-inline void solve_lower(int n, const float* l, int ldl, float* x, bool transposed) {
-  const int one = 1;
-  strsv_("L", transposed ? "T" : "N", "N", &n, l, &ldl, x, &one);
-}
 inline void solve_lower(int n, const double* l, int ldl, double* x, bool transposed) {
   const int one = 1;
   dtrsv_("L", transposed ? "T" : "N", "N", &n, l, &ldl, x, &one);

@@ -43,8 +43,9 @@ void PressureSolver::keep_mobility(const std::vector<Eigen::VectorXd>& mobility)
   compliance_.assign(*walls_.dense);
   lagged_scale_ = 1.0 / walls_.dense->diagonal().maxCoeff();
   if (lagged_.rows() != n_) lagged_.setZero(n_, n_ + 1);
-  for (int c = 0; c < n_; ++c)
+  for (int c = 0; c < n_; ++c) {
     lagged_.col(c).tail(n_ - c) = (lagged_scale_ * walls_.dense->col(c).tail(n_ - c)).cast<float>();
+  }
   lagged_mobility_.resize(films_.size());
   int offset = 0;
   for (size_t f = 0; f < films_.size(); ++f) {
@@ -53,6 +54,7 @@ void PressureSolver::keep_mobility(const std::vector<Eigen::VectorXd>& mobility)
     j0.coeffs() = mobility[f];
     for (int column = 0; column < j0.outerSize(); ++column) {
       for (Eigen::SparseMatrix<double>::InnerIterator it(j0, column); it; ++it) {
+        if (it.row() < column) continue;  // of the factor the lower triangle is used
         lagged_(offset + it.row(), offset + column) += static_cast<float>(lagged_scale_ * it.value());
       }
     }

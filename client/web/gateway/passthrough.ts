@@ -48,14 +48,18 @@ function answer(from: Headers, context: HandlerContext): void {
   }
 }
 
-/** What the daemon says stays as it is; that it cannot be reached is said in words for people. */
-function explain(cause: unknown): ConnectError {
+/**
+ * What the daemon says stays as it is; that it cannot be reached is said in words for people.
+ *
+ * A connection that is lost under a call ends it in many ways: refused, reset, or cancelled by the transport though
+ * nobody cancelled it. The daemon's own errors carry details, these do not.
+ */
+function explain(cause: unknown, signal: AbortSignal): ConnectError {
   const error = ConnectError.from(cause);
-  const unreachable =
-    error.code === Code.Unavailable &&
-    error.details.length === 0 &&
-    /ECONN|ENOENT|socket|EPIPE/i.test(error.rawMessage);
-  return unreachable ? new ConnectError("the daemon cannot be reached", Code.Unavailable) : error;
+  const lost = [Code.Unavailable, Code.Aborted, Code.Canceled].includes(error.code);
+  const fromNode = error.cause instanceof Error && "code" in error.cause;
+  if (signal.aborted || error.details.length > 0 || !(lost || fromNode)) return error;
+  return new ConnectError("the daemon cannot be reached", Code.Unavailable, undefined, undefined, cause);
 }
 
 async function* only<T>(value: T): AsyncIterable<T> {
@@ -75,7 +79,7 @@ function makeUnary(transport: Transport, method: DescMethodUnary) {
       answer(response.header, context);
       return response.message;
     } catch (error) {
-      throw explain(error);
+      throw explain(error, context.signal);
     }
   };
 }
@@ -97,7 +101,7 @@ async function* passStream(
     answer(response.header, context);
     yield* response.message;
   } catch (error) {
-    throw explain(error);
+    throw explain(error, context.signal);
   }
 }
 

@@ -5,6 +5,7 @@ import { createGrpcWebTransport } from "@connectrpc/connect-node";
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
 import { request, type IncomingMessage } from "node:http";
+import { createServer, type AddressInfo, type Socket } from "node:net";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { BadRequestSchema } from "@google/rpc/error_details_pb";
 import { FrameService, WatchRequestSchema } from "@wire/frame_service_pb";
@@ -180,6 +181,25 @@ describe("a slow browser", () => {
   });
 });
 
+/** What a call through a gateway ends with when its daemon's connection ends so, with the call's first bytes. */
+async function callLosing(end: (socket: Socket) => void): Promise<ConnectError> {
+  const dying = createServer((socket) => socket.on("error", () => undefined).once("data", () => end(socket)));
+  await new Promise<void>((resolve) => dying.listen(0, "127.0.0.1", resolve));
+  const lost = new System();
+  lost.daemonPort = String((dying.address() as AddressInfo).port);
+  try {
+    await lost.startGateway();
+    const through = createClient(PatientService, createGrpcWebTransport({ baseUrl: lost.address, httpVersion: "1.1" }));
+    return await through.getPatient({ name: "patients/any" }).then(
+      () => expect.fail("nobody answers"),
+      (cause) => ConnectError.from(cause),
+    );
+  } finally {
+    await lost.stop();
+    dying.close();
+  }
+}
+
 describe("the daemon's end", () => {
   it("is told in words, and the gateway finds the next one", async () => {
     const { name } = await patients.createPatient({ patientId: "lasting" });
@@ -192,5 +212,13 @@ describe("the daemon's end", () => {
     expect(error?.rawMessage).toMatch(/daemon cannot be reached/);
     await system.startDaemon();
     expect((await patients.getPatient({ name })).name).toBe(name);
+  });
+  it.each([
+    ["reset", (socket: Socket) => void socket.resetAndDestroy()],
+    ["closed", (socket: Socket) => void socket.destroy()],
+    ["ended", (socket: Socket) => void socket.end()],
+  ])("is told as such when the connection is %s under a call", async (_, end) => {
+    const error = await callLosing(end);
+    expect([error.code, error.rawMessage]).toEqual([Code.Unavailable, "the daemon cannot be reached"]);
   });
 });

@@ -121,11 +121,12 @@ export class System {
     await this.browser?.close();
     this.gateway?.kill("SIGTERM");
     this.daemon?.kill("SIGTERM");
-    await until(
-      "the daemon's end",
-      () => (this.daemon?.exitCode ?? this.daemon?.signalCode ?? undefined) as unknown,
-      40,
-    ).catch(() => this.daemon?.kill("SIGKILL"));
+    if (this.daemon)
+      await until(
+        "the daemon's end",
+        () => (this.daemon!.exitCode ?? this.daemon!.signalCode ?? undefined) as unknown,
+        40,
+      ).catch(() => this.daemon!.kill("SIGKILL"));
     rmSync(this.folder, { recursive: true, force: true });
   }
 }

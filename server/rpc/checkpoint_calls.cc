@@ -115,7 +115,7 @@ absl::StatusOr<v1::Simulation> begin_from(Backend& backend, const RestoreTarget&
   if (!kept.ok()) return kept.status();
   if (kept->id != *id) return show_made_before(backend, simulation_name(kept->id), request.start());
   const auto epoch = static_cast<uint64_t>(record.create_time_us);
-  auto session = std::make_shared<Session>(make_session_options(backend, *id, epoch, loaded->spec),
+  auto session = std::make_shared<Session>(make_session_options(backend, record, epoch, loaded->spec),
                                            std::move(loaded->simulation), backend.workers, backend.keeper);
   return open_session(backend, *std::move(place), record, std::move(session), request.start());
 }

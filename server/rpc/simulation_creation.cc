@@ -47,7 +47,7 @@ absl::StatusOr<v1::Simulation> show_checked(Backend& backend, const SimulationRe
   if (backend.store.get_simulation(record.id).ok()) {
     return absl::AlreadyExistsError(absl::StrCat(simulation_name(record.id), " exists"));
   }
-  const Session session(make_session_options(backend, record.id, 0, spec), std::move(simulation), backend.workers,
+  const Session session(make_session_options(backend, record, 0, spec), std::move(simulation), backend.workers,
                         backend.keeper);
   const SessionView view = session.cached_view();
   return to_simulation(record, &view);
@@ -103,10 +103,11 @@ absl::StatusOr<std::unique_ptr<simulation::Simulation>> make_simulation(Backend&
   return made;
 }
 
-SessionOptions make_session_options(const Backend& backend, const std::string& id, uint64_t epoch,
+SessionOptions make_session_options(const Backend& backend, const SimulationRecord& record, uint64_t epoch,
                                     const v1::SimulationSpec& spec) {
   SessionOptions options;
-  options.id = id;
+  options.id = record.id;
+  options.tenant = record.tenant;
   options.epoch = epoch;
   options.real_time = spec.pace() == v1::REAL_TIME;
   options.preview = spec.preview();
@@ -180,7 +181,7 @@ absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const Princip
   if (!kept.ok()) return kept.status();
   if (kept->id != record->id) return show_made_before(backend, simulation_name(kept->id), request.start());
   const auto epoch = static_cast<uint64_t>(record->create_time_us);
-  auto session = std::make_shared<Session>(make_session_options(backend, record->id, epoch, request.spec()),
+  auto session = std::make_shared<Session>(make_session_options(backend, *record, epoch, request.spec()),
                                            *std::move(simulation), backend.workers, backend.keeper);
   return open_session(backend, *std::move(place), *record, std::move(session), request.start());
 }

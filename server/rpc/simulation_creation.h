@@ -20,7 +20,7 @@ absl::StatusOr<v1::Simulation> show_simulation(Backend& backend, const std::stri
 /// The core's simulation of a plan; the model may have to be built again. Field violations below "spec".
 absl::StatusOr<std::unique_ptr<simulation::Simulation>> make_simulation(Backend& backend, const std::string& model,
                                                                         const v1::SimulationSpec& spec);
-SessionOptions make_session_options(const Backend& backend, const std::string& id, uint64_t epoch,
+SessionOptions make_session_options(const Backend& backend, const SimulationRecord& record, uint64_t epoch,
                                     const v1::SimulationSpec& spec);
 
 /// Lets others find a session whose record was just made, and starts it where asked. Without room for it, or when its

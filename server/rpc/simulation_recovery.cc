@@ -144,7 +144,7 @@ absl::StatusOr<Revived> revive(Backend& backend, const SimulationRecord& record)
                history->until_step > step ? absl::StrCat(", catching up to step ", history->until_step) : "");
   const uint64_t bytes = ground->simulation->memory_bytes();
   const auto session =
-      std::make_shared<Session>(make_session_options(backend, record.id, *epoch, ground->spec),
+      std::make_shared<Session>(make_session_options(backend, record, *epoch, ground->spec),
                                 std::move(ground->simulation), backend.workers, backend.keeper, *std::move(history));
   return Revived{session, bytes};
 }

@@ -107,7 +107,7 @@ void Session::schedule() {
   }
   if (scheduled_) return;
   scheduled_ = true;
-  workers_.schedule(shared_from_this());
+  workers_.schedule(shared_from_this(), options_.tenant);
 }
 
 // Time in the queue is no time spent running, and real time begins with the first step.

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <deque>
 #include <future>
+#include <numeric>
 #include <string>
 #include <thread>
 
@@ -107,6 +109,83 @@ TEST(WorkerPool, HasTheOthersWaitInAQueue) {
   c->done.get_future().wait();
   pool.stop();
   EXPECT_EQ(log, "aacc");
+}
+
+/// Tasks of a group, with turns of 2 ms, that take turns until the pool stops.
+struct Crowd {
+  Crowd(WorkerPool& pool, const std::string& group, int n) {
+    for (int i = 0; i < n; ++i) {
+      tasks.push_back(std::make_shared<Busy>('x', std::chrono::milliseconds(2), 1'000'000, logs.emplace_back()));
+    }
+    for (const auto& task : tasks) pool.schedule(task, group);
+  }
+  int turns() const {
+    return std::accumulate(tasks.begin(), tasks.end(), 0, [](int n, const auto& t) { return n + t->turns_taken; });
+  }
+  void await(int n) const {
+    while (turns() < n) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  Clock::duration used() const {
+    return std::accumulate(tasks.begin(), tasks.end(), Clock::duration(),
+                           [](auto sum, const auto& t) { return sum + t->used; });
+  }
+  std::deque<std::string> logs;  ///< each has its own: they run at the same time
+  std::vector<std::shared_ptr<Busy>> tasks;
+};
+
+TEST(WorkerPool, GivesTheSameTimeToGroupsHoweverManyTheirTasks) {
+  for (const int n_workers : {1, 2}) {
+    WorkerPool pool(n_workers);
+    const Crowd many(pool, "many", 5);
+    const Crowd two(pool, "two", 2);
+    two.await(100);
+    pool.stop();
+    // Time counts, not turns: those of a busy machine may be long.
+    const double share = std::chrono::duration<double>(two.used()) / many.used();
+    EXPECT_GT(share, 0.6);
+    EXPECT_LT(share, 1.5);
+  }
+}
+
+TEST(WorkerPool, AGroupThatComesLaterNeitherOwesNorIsOwed) {
+  WorkerPool pool(1);
+  const Crowd first(pool, "first", 3);
+  first.await(30);
+  const int before = first.turns();
+  const Crowd second(pool, "second", 1);
+  second.await(20);
+  EXPECT_GE(first.turns() - before, 5);
+}
+
+TEST(WorkerPool, AGroupWithFewerTasksThanThreadsSavesNothingUp) {
+  WorkerPool pool(3);
+  const Crowd many(pool, "many", 4);
+  const Crowd one(pool, "few", 1);
+  one.await(40);  // `many` has had twice as much
+  const int before = many.turns();
+  const Crowd others(pool, "few", 4);
+  others.await(20);
+  EXPECT_GE(many.turns() - before, 5);
+}
+
+TEST(WorkerPool, AdmitsGroupsInTurn) {
+  std::string log;
+  const auto gate = std::make_shared<Gate>();
+  const auto a = std::make_shared<Busy>('a', std::chrono::milliseconds(0), 1, log);
+  const auto b = std::make_shared<Busy>('b', std::chrono::milliseconds(0), 1, log);
+  const auto c = std::make_shared<Busy>('c', std::chrono::milliseconds(0), 1, log);
+  WorkerPool pool(1, 1);
+  pool.schedule(gate, "ward");
+  pool.schedule(a, "ward");
+  pool.schedule(b, "ward");
+  pool.schedule(c, "clinic");
+  EXPECT_EQ(pool.queue_position(*c), 1u);
+  EXPECT_EQ(pool.queue_position(*a), 2u);
+  EXPECT_EQ(pool.queue_position(*b), 3u);
+  gate->open.set_value();
+  b->done.get_future().wait();
+  pool.stop();
+  EXPECT_EQ(log, "cab");
 }
 
 TEST(WorkerPool, WaitsUntilATaskIsDue) {

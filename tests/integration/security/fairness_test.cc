@@ -1,7 +1,10 @@
 // Tenants on one daemon: none gets more of it, or gets it earlier, because it asks for more.
 
+#include <algorithm>
 #include <thread>
 
+#include "google/rpc/error_details.pb.h"
+#include "google/rpc/status.pb.h"
 #include "tests/integration/security/secure_fixture.h"
 
 namespace lipofill::testing {
@@ -47,6 +50,13 @@ class Planner {
   const std::string tenant_;
   const Possessions own_;
 };
+
+bool has_retry_info(const Answer& answer) {
+  google::rpc::Status wire;
+  wire.ParseFromString(answer.status.error_details());
+  return std::any_of(wire.details().begin(), wire.details().end(),
+                     [](const auto& detail) { return detail.template Is<google::rpc::RetryInfo>(); });
+}
 
 class TenantQueueTest : public SecureTest {
  protected:
@@ -96,6 +106,27 @@ TEST_F(TenantShareTest, TenantsGetEqualTimeHoweverManySimulationsTheyRun) {
   const double ratio = (ward_after - ward_before) / (clinic_after - clinic_before);
   EXPECT_GT(ratio, 0.5);
   EXPECT_LT(ratio, 2.0);
+}
+
+class TenantBoundTest : public SecureTest {
+ protected:
+  TenantBoundTest() : SecureTest({"--max-simulations-per-tenant", "2"}) {}
+};
+
+TEST_F(TenantBoundTest, CountsEachTenantsOwn) {
+  const Planner ward(caller("ward", "planner"), "ward");  // with a simulation that is READY
+  const Planner clinic(caller("clinic", "planner"), "clinic");
+  ASSERT_TRUE(ward.run("1").status.ok());
+  const Answer refused = ward.run("2");
+  EXPECT_EQ(refused.code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_EQ(refused.reason(), "TOO_MANY_SIMULATIONS_OF_TENANT");
+  EXPECT_TRUE(has_retry_info(refused));
+  EXPECT_TRUE(clinic.run("1").status.ok());
+  EXPECT_EQ(clinic.run("2").reason(), "TOO_MANY_SIMULATIONS_OF_TENANT");
+  // One that has ended makes room for its own tenant's.
+  ASSERT_TRUE(ward.stop("1").status.ok());
+  EXPECT_TRUE(ward.run("2").status.ok());
+  EXPECT_EQ(clinic.run("2").code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
 }
 
 }  // namespace

@@ -84,10 +84,10 @@ std::shared_ptr<const Frame> Session::make_frame(const std::vector<std::string>&
 }
 
 /// Viewers who ask for no rate get what screens show, and many of them no more together than the daemon sends for a
-/// twentieth of a core.
+/// twentieth of what short steps take.
 void Session::share_rate() {
   constexpr double kScreenRate = 60.0;
-  constexpr double kSharedRate = 1000.0;
+  constexpr double kSharedRate = 480.0;
   const auto sharing = std::count_if(viewers_.begin(), viewers_.end(), [](const auto& v) { return v->shares_rate(); });
   const double rate_hz = std::min(kScreenRate, kSharedRate / static_cast<double>(std::max<std::ptrdiff_t>(sharing, 1)));
   for (const auto& viewer : viewers_) {

@@ -171,11 +171,14 @@ FrameToSend Viewer::take_frame(Clock::time_point now) {
   sent_epoch_ = next.frame->epoch;
   sent_sequence_ = next.frame->sequence;
   if (options_.max_unacknowledged > 0) unacknowledged_.push_back(sent_sequence_);
-  if (max_rate_hz_ > 0.0) {
-    const std::chrono::duration<double> period(1.0 / max_rate_hz_);
-    next_due_ = now + std::chrono::ceil<Clock::duration>(period);
-  }
+  if (max_rate_hz_ > 0.0) next_due_ = find_next_due(now);
   return next;
+}
+
+Viewer::Clock::time_point Viewer::find_next_due(Clock::time_point now) const {
+  const auto period = std::chrono::ceil<Clock::duration>(std::chrono::duration<double>(1.0 / max_rate_hz_));
+  if (!options_.shares_rate) return now + period;
+  return now + period - now.time_since_epoch() % period;
 }
 
 absl::Status Viewer::acknowledge(uint64_t epoch, uint64_t sequence) {

@@ -91,6 +91,8 @@ class Viewer {
   void skip_waiting_frames();
   void queue_frame(std::shared_ptr<const Frame> frame);
   FrameToSend take_frame(Clock::time_point now);
+  /// Of viewers who share a rate at the same moments, so that one frame is made and encoded for all.
+  Clock::time_point find_next_due(Clock::time_point now) const;
   bool must_wait() const;
 
   const ViewerOptions options_;

@@ -14,7 +14,7 @@ namespace {
 
 struct Options {
   PlanOptions plan{LIPOFILL_EXAMPLES "/plans/jaw_angle.json", "", ""};
-  double simulated_s = 1.0;
+  double simulated_s = 5.0;
   std::string out;
   int workers = 2;
   std::vector<int> sessions = {1, 2, 4, 8};

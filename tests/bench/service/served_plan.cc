@@ -75,6 +75,7 @@ absl::Status ServedPlan::create(const std::string& id, double simulated_s) {
   *request.mutable_spec() = plan_.plan.simulation();
   request.mutable_spec()->set_model(model_);
   request.mutable_spec()->mutable_time()->set_end_s(simulated_s);
+  request.mutable_spec()->mutable_time()->clear_max_step_ms();
   request.mutable_spec()->mutable_time()->set_settle_skin_speed_mm_per_s(0.0);
   return connection_
       .call<SimulationService>(&SimulationService::Stub::CreateSimulation, request,

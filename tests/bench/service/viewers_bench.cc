@@ -74,18 +74,18 @@ absl::StatusOr<ViewersRow> run_once(ServedPlan& served, const std::string& id, i
   for (int k = 0; k < n_viewers; ++k) viewers.emplace_back(served.connection().server(), request, watching);
   watching.wait();
 
+  const absl::Status started = served.start(id);
   const ProcessFigures before = read_process(served.daemon());
   const Clock::time_point begin = Clock::now();
-  const absl::Status started = served.start(id);
   // Without a start there is no end either: deleting the simulation ends the streams.
   if (!started.ok()) served.remove(id).IgnoreError();
   const absl::StatusOr<v1::Simulation> end = served.await_end(id);
   ViewersRow row;
   row.wall_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  const ProcessFigures after = read_process(served.daemon());
   for (Viewer& viewer : viewers) viewer.join();
   if (!end.ok()) return end.status();
   if (const absl::Status seen = check(viewers); !seen.ok()) return seen;
-  const ProcessFigures after = read_process(served.daemon());
   row.viewers = n_viewers;
   row.steps = static_cast<double>(end->summary().steps());
   row.worker_cpu_s = after.cpu_s_of_name("worker") - before.cpu_s_of_name("worker");

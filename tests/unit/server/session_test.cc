@@ -98,22 +98,22 @@ TEST_F(SessionTest, ShowsFramesUntilTheEndAndAfterIt) {
   EXPECT_TRUE(std::get<FrameToSend>(late->take()).frame->end);
 }
 
-/// Sixteen and two thirds viewers at 60 Hz are 1000 frames a second: more than that share them.
+/// Eight viewers at 60 Hz are 480 frames a second: more than that share them, and are due at the same moments.
 TEST_F(SessionTest, ManyViewersShareARateUnlessTheyAskForOne) {
   const auto s = session("a", 1e6);
-  const Viewer::Clock::time_point start{std::chrono::seconds(1000)};
-  const auto interval_ms = [&](Viewer& viewer) {
+  const auto at = [](int ms) { return Viewer::Clock::time_point(std::chrono::milliseconds(ms)); };
+  const auto due_ms_after_a_frame_at = [&](int taken_ms, Viewer& viewer) {
     EXPECT_TRUE(inspect(*s).ok()) << "commands are carried out in order";
-    EXPECT_TRUE(std::holds_alternative<TopologyToSend>(viewer.take(start)));
-    EXPECT_TRUE(std::holds_alternative<FrameToSend>(viewer.take(start)));
-    int wait = 0;
-    while (!viewer.wants(0.0, false, start + std::chrono::milliseconds(wait))) ++wait;
-    return wait;
+    EXPECT_TRUE(std::holds_alternative<TopologyToSend>(viewer.take(at(taken_ms))));
+    EXPECT_TRUE(std::holds_alternative<FrameToSend>(viewer.take(at(taken_ms))));
+    int ms = taken_ms;
+    while (!viewer.wants(0.0, false, at(ms))) ++ms;
+    return ms;
   };
   ViewerOptions options;
   options.shares_rate = true;
   std::vector<std::shared_ptr<Viewer>> viewers;
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < 24; ++k) {
     viewers.push_back(std::make_shared<Viewer>(options, [] {}));
     s->watch(viewers.back());
   }
@@ -121,13 +121,15 @@ TEST_F(SessionTest, ManyViewersShareARateUnlessTheyAskForOne) {
   own.max_rate_hz = 200.0;
   const auto fast = std::make_shared<Viewer>(own, [] {});
   s->watch(fast);
-  EXPECT_EQ(interval_ms(*viewers.back()), 40);
-  EXPECT_EQ(interval_ms(*fast), 5);
-  while (viewers.size() > 10) {
+  EXPECT_EQ(due_ms_after_a_frame_at(0, *viewers[23]), 50);
+  EXPECT_EQ(due_ms_after_a_frame_at(30, *viewers[22]), 50);
+  EXPECT_EQ(due_ms_after_a_frame_at(30, *fast), 35);
+  while (viewers.size() > 8) {
     s->unwatch(viewers.back());
     viewers.pop_back();
   }
-  EXPECT_EQ(interval_ms(*viewers.front()), 17);
+  EXPECT_EQ(due_ms_after_a_frame_at(0, *viewers[0]), 17);
+  EXPECT_EQ(due_ms_after_a_frame_at(30, *viewers[1]), 34);
 }
 
 TEST_F(SessionTest, StopsWhileItWaitsForRealTime) {

@@ -154,6 +154,7 @@ TEST(WorkerPool, AGroupThatComesLaterNeitherOwesNorIsOwed) {
   const int before = first.turns();
   const Crowd second(pool, "second", 1);
   second.await(20);
+  pool.stop();
   EXPECT_GE(first.turns() - before, 5);
 }
 
@@ -165,6 +166,7 @@ TEST(WorkerPool, AGroupWithFewerTasksThanThreadsSavesNothingUp) {
   const int before = many.turns();
   const Crowd others(pool, "few", 4);
   others.await(20);
+  pool.stop();
   EXPECT_GE(many.turns() - before, 5);
 }
 

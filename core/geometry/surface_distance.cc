@@ -11,6 +11,20 @@ namespace {
 
 constexpr double kOnEdge = 1e-7;  // of a barycentric coordinate
 
+/// Asks for every so many points, which take some milliseconds, whether they are wanted.
+class Patience {
+ public:
+  explicit Patience(const Unwanted& unwanted) : unwanted_(unwanted) {}
+  absl::Status check_next() {
+    constexpr size_t kPoints = 256;
+    return n_points_++ % kPoints == 0 ? check_wanted(unwanted_) : absl::OkStatus();
+  }
+
+ private:
+  const Unwanted& unwanted_;
+  size_t n_points_ = 0;
+};
+
 /// Signs distances with the normal of the nearest face, edge or vertex, those of edges and vertices weighted by the
 /// angles around them: the sign is then right everywhere (Baerentzen & Aanaes 2005).
 class DistanceSigner {
@@ -65,10 +79,12 @@ class DistanceSigner {
 };
 
 /// Vertices of the triangles of `target` that are nearest to the vertices of `patch`, ascending.
-std::vector<int> find_facing_vertices(const SurfaceMesh& patch, const SurfaceMesh& target) {
+absl::StatusOr<std::vector<int>> find_facing_vertices(const SurfaceMesh& patch, const SurfaceMesh& target,
+                                                      Patience& patience) {
   std::vector<bool> facing(target.n_vertices(), false);
   const SurfaceLocator locator(target);
   for (int v = 0; v < patch.n_vertices(); ++v) {
+    if (absl::Status wanted = patience.check_next(); !wanted.ok()) return wanted;
     for (const int w : target.triangles[locator.find_nearest(patch.points.col(v)).triangle]) facing[w] = true;
   }
   std::vector<int> vertices;
@@ -93,16 +109,20 @@ std::vector<std::vector<int>> list_neighbours(const SurfaceMesh& mesh) {
 /// Nearest points on the patch of the part of the target that lies over it: from the vertices the patch is nearest to,
 /// along edges, as far as the nearest point stays off the patch's border. The far side of the head, whose nearest point
 /// may be in the patch's inside as well, is not reached.
-std::vector<SurfacePoint> find_opposite_vertices(const SurfaceMesh& patch, const SurfaceMesh& target) {
+absl::StatusOr<std::vector<SurfacePoint>> find_opposite_vertices(const SurfaceMesh& patch, const SurfaceMesh& target,
+                                                                 Patience& patience) {
   const SurfaceLocator locator(patch);
   const DistanceSigner signer(patch);
   const std::vector<bool> border = signer.find_border_vertices();
   const std::vector<std::vector<int>> beside = list_neighbours(target);
-  std::vector<int> front = find_facing_vertices(patch, target);
+  auto facing = find_facing_vertices(patch, target, patience);
+  if (!facing.ok()) return facing.status();
+  std::vector<int> front = *std::move(facing);
   std::vector<bool> seen(target.n_vertices(), false);
   for (const int v : front) seen[v] = true;
   std::vector<SurfacePoint> opposite;
   for (size_t k = 0; k < front.size(); ++k) {
+    if (absl::Status wanted = patience.check_next(); !wanted.ok()) return wanted;
     const SurfacePoint nearest = locator.find_nearest(target.points.col(front[k]));
     if (signer.is_on_border(nearest, border)) continue;
     opposite.push_back(nearest);
@@ -118,11 +138,18 @@ std::vector<SurfacePoint> find_opposite_vertices(const SurfaceMesh& patch, const
 }  // namespace
 
 std::vector<double> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface) {
+  return *compute_signed_distances(points, surface, nullptr);
+}
+
+absl::StatusOr<std::vector<double>> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface,
+                                                             const Unwanted& unwanted) {
+  Patience patience(unwanted);
   std::vector<double> distances(static_cast<size_t>(points.cols()), 0.0);
   if (surface.triangles.empty()) return distances;
   const SurfaceLocator locator(surface);
   const DistanceSigner signer(surface);
   for (Eigen::Index k = 0; k < points.cols(); ++k) {
+    if (absl::Status wanted = patience.check_next(); !wanted.ok()) return wanted;
     distances[static_cast<size_t>(k)] = signer.sign(locator.find_nearest(points.col(k)), points.col(k));
   }
   return distances;
@@ -145,13 +172,19 @@ DistanceStatistics compute_distance_statistics(const std::vector<double>& distan
   return statistics;
 }
 
-PatchDistance compute_patch_distance(const SurfaceMesh& patch, const SurfaceMesh& target) {
+absl::StatusOr<PatchDistance> compute_patch_distance(const SurfaceMesh& patch, const SurfaceMesh& target,
+                                                     const Unwanted& unwanted) {
+  auto distances = compute_signed_distances(patch.points, target, unwanted);
+  if (!distances.ok()) return distances.status();
   PatchDistance result;
-  result.patch_to_target = compute_signed_distances(patch.points, target);
+  result.patch_to_target = *std::move(distances);
   result.patch_to_target_statistics = compute_distance_statistics(result.patch_to_target);
   if (patch.triangles.empty() || target.triangles.empty()) return result;
+  Patience patience(unwanted);
+  const auto opposite = find_opposite_vertices(patch, target, patience);
+  if (!opposite.ok()) return opposite.status();
   std::vector<double> target_to_patch;
-  for (const SurfacePoint& nearest : find_opposite_vertices(patch, target)) target_to_patch.push_back(nearest.distance);
+  for (const SurfacePoint& nearest : *opposite) target_to_patch.push_back(nearest.distance);
   result.target_to_patch_statistics = compute_distance_statistics(target_to_patch);
   return result;
 }

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "absl/status/statusor.h"
+#include "core/base/unwanted.h"
 #include "core/geometry/surface_mesh.h"
 
 namespace lipofill::geometry {
@@ -17,6 +19,9 @@ struct DistanceStatistics {
 
 /// Signed distance of each point to a surface through VTK: positive on the outside of its nearest triangle [m].
 std::vector<double> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface);
+/// The same; CANCELLED once it is unwanted.
+absl::StatusOr<std::vector<double>> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface,
+                                                             const Unwanted& unwanted);
 
 /// Of the absolute values. All zero for no values.
 DistanceStatistics compute_distance_statistics(const std::vector<double>& distances);
@@ -30,8 +35,9 @@ struct PatchDistance {
   DistanceStatistics target_to_patch_statistics;
 };
 
-/// `patch`: the surface made of the patch alone. Checked by tests/unit/geometry/surface_distance_test.cc on concentric
-/// spheres and parallel planes.
-PatchDistance compute_patch_distance(const SurfaceMesh& patch, const SurfaceMesh& target);
+/// `patch`: the surface made of the patch alone. CANCELLED once it is unwanted. Checked by
+/// tests/unit/geometry/surface_distance_test.cc on concentric spheres and parallel planes.
+absl::StatusOr<PatchDistance> compute_patch_distance(const SurfaceMesh& patch, const SurfaceMesh& target,
+                                                     const Unwanted& unwanted = nullptr);
 
 }  // namespace lipofill::geometry

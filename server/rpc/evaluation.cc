@@ -95,21 +95,24 @@ absl::StatusOr<SkinPatch> make_skin_patch(const simulation::FaceModel& model, co
   return model.is_square ? make_square_patch(meshes, frame) : make_scan_patch(model, frame);
 }
 
-absl::StatusOr<v1::Evaluation> evaluate(const SkinPatch& patch, const geometry::SurfaceMesh& target) {
+absl::StatusOr<v1::Evaluation> evaluate(const SkinPatch& patch, const geometry::SurfaceMesh& target,
+                                        const Unwanted& unwanted) {
   if (patch.after.triangles.empty()) return absl::FailedPreconditionError("the patch of the model has no triangle");
   if (patch.vertices.size() > kMaxPatchVertices) {
     return absl::ResourceExhaustedError(absl::StrCat("the patch has ", patch.vertices.size(),
                                                      " vertices, an evaluation holds at most ", kMaxPatchVertices));
   }
-  const geometry::PatchDistance distance = geometry::compute_patch_distance(patch.after, target);
-  const auto before = geometry::compute_signed_distances(patch.before.points, target);
+  const auto distance = geometry::compute_patch_distance(patch.after, target, unwanted);
+  if (!distance.ok()) return distance.status();
+  const auto before = geometry::compute_signed_distances(patch.before.points, target, unwanted);
+  if (!before.ok()) return before.status();
   v1::Evaluation evaluation;
-  *evaluation.mutable_simulated_to_target() = to_distance_statistics(distance.patch_to_target_statistics);
-  *evaluation.mutable_target_to_simulated() = to_distance_statistics(distance.target_to_patch_statistics);
+  *evaluation.mutable_simulated_to_target() = to_distance_statistics(distance->patch_to_target_statistics);
+  *evaluation.mutable_target_to_simulated() = to_distance_statistics(distance->target_to_patch_statistics);
   evaluation.set_hausdorff_mm(
       std::max(evaluation.simulated_to_target().max_mm(), evaluation.target_to_simulated().max_mm()));
-  *evaluation.mutable_before_to_target() = to_distance_statistics(geometry::compute_distance_statistics(before));
-  for (const double d : distance.patch_to_target) evaluation.add_distance_mm(static_cast<float>(1e3 * d));
+  *evaluation.mutable_before_to_target() = to_distance_statistics(geometry::compute_distance_statistics(*before));
+  for (const double d : distance->patch_to_target) evaluation.add_distance_mm(static_cast<float>(1e3 * d));
   evaluation.mutable_vertices()->Add(patch.vertices.begin(), patch.vertices.end());
   evaluation.set_mesh(patch.mesh);
   return evaluation;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "absl/status/statusor.h"
+#include "core/base/unwanted.h"
 #include "core/geometry/surface_mesh.h"
 #include "core/simulation/face_model.h"
 #include "lipofill/v1/frame_service.pb.h"
@@ -21,7 +22,8 @@ struct SkinPatch {
 absl::StatusOr<SkinPatch> make_skin_patch(const simulation::FaceModel& model, const v1::MeshSlice& meshes,
                                           const v1::FrameSlice& frame);
 
-/// RESOURCE_EXHAUSTED for a patch of more vertices than a response holds.
-absl::StatusOr<v1::Evaluation> evaluate(const SkinPatch& patch, const geometry::SurfaceMesh& target);
+/// RESOURCE_EXHAUSTED for a patch of more vertices than a response holds, CANCELLED once it is unwanted.
+absl::StatusOr<v1::Evaluation> evaluate(const SkinPatch& patch, const geometry::SurfaceMesh& target,
+                                        const Unwanted& unwanted);
 
 }  // namespace lipofill::server

@@ -130,6 +130,7 @@ absl::Status FrameService::watch_parked(const v1::WatchRequest& request, const s
   stream->hold();
   const bool taken = backend_.calls.run([this, request, id, stream] {
     const absl::Status watching = guarded([&]() -> absl::Status {
+      if (stream->has_ended()) return absl::OkStatus();  // nobody to be woken for
       const auto session = find_or_wake(backend_, id);
       if (!session.ok()) return session.status();
       return *session != nullptr ? watch_session(request, *session, stream) : watch_kept(request, id, stream);

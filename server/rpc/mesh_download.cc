@@ -118,9 +118,9 @@ grpc::ServerWriteReactor<v1::MeshSlice>* send_slices(Backend& backend, grpc::Cal
     stream->fail(valid);
     return stream;
   }
-  const bool taken = backend.calls.run([stream, make = std::move(make)] {
+  const bool taken = backend.calls.run([context, stream, make = std::move(make)] {
     std::vector<v1::MeshSlice> slices;
-    const absl::Status made = guarded([&]() -> absl::Status {
+    const absl::Status made = guarded_if_wanted(caller_has_left(context), [&]() -> absl::Status {
       auto all = make();
       if (all.ok()) slices = *std::move(all);
       return all.status();

@@ -99,7 +99,8 @@ absl::StatusOr<PresentResult> read_present(Backend& backend, const std::string& 
   return *session != nullptr ? capture(**session, meshes) : read_result(backend, id);
 }
 
-absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::EvaluateSimulationRequest& request) {
+absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::EvaluateSimulationRequest& request,
+                                                   const Unwanted& unwanted) {
   const auto id = parse_simulation_name(request.name(), "name");
   if (!id.ok()) return id.status();
   const auto scan = parse_scan_name(request.target_scan(), "target_scan");
@@ -108,13 +109,14 @@ absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::E
   if (!record.ok()) return record.status();
   const auto target = read_scan_surface(backend, scan->patient, scan->id);
   if (!target.ok()) return target.status();
+  if (absl::Status wanted = check_wanted(unwanted); !wanted.ok()) return wanted;
   const auto model = backend.load_model(record->model);
   if (!model.ok()) return model.status();
   const auto result = read_present(backend, *id, {(*model)->is_square ? "skin" : "scan"});
   if (!result.ok()) return result.status();
   const auto patch = make_skin_patch(**model, result->meshes, result->frame);
   if (!patch.ok()) return patch.status();
-  return evaluate(*patch, *target);
+  return evaluate(*patch, *target, unwanted);
 }
 
 }  // namespace lipofill::server

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/base/unwanted.h"
 #include "lipofill/v1/frame_service.pb.h"
 #include "lipofill/v1/simulation_service.pb.h"
 #include "server/rpc/backend.h"
@@ -24,7 +25,8 @@ struct PresentResult {
 absl::StatusOr<PresentResult> read_present(Backend& backend, const std::string& id,
                                            const std::vector<std::string>& meshes);
 
-/// Distance of the simulated skin, as it is now or when it ended, to a target scan.
-absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::EvaluateSimulationRequest& request);
+/// Distance of the simulated skin, as it is now or when it ended, to a target scan. CANCELLED once it is unwanted.
+absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::EvaluateSimulationRequest& request,
+                                                   const Unwanted& unwanted);
 
 }  // namespace lipofill::server

@@ -160,8 +160,7 @@ absl::Status delete_simulation_record(Backend& backend, const std::string& id, c
 }
 
 absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const Principal& caller,
-                                                 const v1::CreateSimulationRequest& request,
-                                                 const std::function<bool()>& caller_has_left) {
+                                                 const v1::CreateSimulationRequest& request, const Unwanted& unwanted) {
   const auto record = read_request(caller, request);
   if (!record.ok()) return record.status();
   const RequestKey key = make_request_key(caller, "CreateSimulation", request.request_id(), request);
@@ -175,7 +174,7 @@ absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const Princip
   auto simulation = make_simulation(backend, record->model, request.spec());
   if (!simulation.ok()) return simulation.status();
   if (absl::Status room = place->claim((*simulation)->memory_bytes()); !room.ok()) return room;
-  if (caller_has_left()) return absl::CancelledError("the caller left before the simulation was created");
+  if (absl::Status wanted = check_wanted(unwanted); !wanted.ok()) return wanted;
   if (request.validate_only()) return show_checked(backend, *record, request.spec(), *std::move(simulation));
   const auto kept = backend.store.create_simulation(*record, key);
   if (!kept.ok()) return kept.status();

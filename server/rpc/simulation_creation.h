@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "core/base/unwanted.h"
 #include "lipofill/v1/simulation_service.pb.h"
 #include "server/rpc/backend.h"
 #include "server/security/principal.h"
@@ -35,9 +35,8 @@ absl::StatusOr<v1::Simulation> show_made_before(Backend& backend, const std::str
 absl::Status delete_simulation_record(Backend& backend, const std::string& id, const std::string& etag = "");
 
 /// Makes the simulation (the core checks the specification), its record and its session, or finds what an equal request
-/// made. May take seconds: the model may have to be built again.
+/// made. May take seconds: the model may have to be built again. CANCELLED when it is unwanted by then.
 absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const Principal& caller,
-                                                 const v1::CreateSimulationRequest& request,
-                                                 const std::function<bool()>& caller_has_left);
+                                                 const v1::CreateSimulationRequest& request, const Unwanted& unwanted);
 
 }  // namespace lipofill::server

@@ -79,9 +79,9 @@ absl::Status answer_without_session(Backend& backend, const SimulationRecord& re
 using Act = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
 
 void wake_and_act(Backend& backend, const std::string& id, const RequestKey& key, const Act& act,
-                  const Session::Reply& reply) {
+                  const Unwanted& unwanted, const Session::Reply& reply) {
   absl::StatusOr<std::shared_ptr<Session>> session = nullptr;
-  const absl::Status woken = guarded([&] {
+  const absl::Status woken = guarded_if_wanted(unwanted, [&] {
     session = find_or_wake(backend, id);
     return session.status();
   });
@@ -112,9 +112,9 @@ Reactor* SimulationService::command(Context* context, const Request* request, v1
     const auto record = backend_.store.get_simulation(*id);
     if (!record.ok()) return record.status();
     if (!is_parked(*record)) return answer_without_session(backend_, *record, what, key, *response);
-    answered =
-        backend_.calls.run([this, id = *id, key, act, reply = reply_to(backend_, *id, reactor, response, amend)] {
-          wake_and_act(backend_, id, key, act, reply);
+    answered = backend_.calls.run(
+        [this, context, id = *id, key, act, reply = reply_to(backend_, *id, reactor, response, amend)] {
+          wake_and_act(backend_, id, key, act, caller_has_left(context), reply);
         });
     return too_many_calls(backend_);
   });
@@ -125,8 +125,7 @@ Reactor* SimulationService::command(Context* context, const Request* request, v1
 Reactor* SimulationService::CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                                              v1::Simulation* response) {
   return answer_later(context, request, backend_, [this, context, request, response] {
-    auto simulation =
-        create_simulation(backend_, call_of(context).principal, *request, [context] { return context->IsCancelled(); });
+    auto simulation = create_simulation(backend_, call_of(context).principal, *request, caller_has_left(context));
     if (simulation.ok()) *response = *std::move(simulation);
     return simulation.status();
   });
@@ -302,8 +301,8 @@ Reactor* SimulationService::GetSeries(Context* context, const v1::GetSeriesReque
 
 Reactor* SimulationService::EvaluateSimulation(Context* context, const v1::EvaluateSimulationRequest* request,
                                                v1::Evaluation* response) {
-  return answer_later(context, request, backend_, [this, request, response]() -> absl::Status {
-    auto evaluation = evaluate_simulation(backend_, *request);
+  return answer_later(context, request, backend_, [this, context, request, response]() -> absl::Status {
+    auto evaluation = evaluate_simulation(backend_, *request, caller_has_left(context));
     if (evaluation.ok()) *response = *std::move(evaluation);
     return evaluation.status();
   });

@@ -70,7 +70,7 @@ absl::StatusOr<Eigen::VectorXd> find_pressure(const v1::FrameSlice& frame, const
   return absl::DataLossError(absl::StrCat("the result has no array ", name));
 }
 
-absl::StatusOr<TimedDeck> make_deck(Backend& backend, const std::string& id) {
+absl::StatusOr<TimedDeck> make_deck(Backend& backend, const std::string& id, const Unwanted& unwanted) {
   const auto record = backend.store.get_simulation(id);
   if (!record.ok()) return record.status();
   v1::SimulationSpec message;
@@ -83,6 +83,7 @@ absl::StatusOr<TimedDeck> make_deck(Backend& backend, const std::string& id) {
         absl::StrCat(simulation_name(id), " has outlived its model: ", record->model, " was deleted"));
   }
   if (!model.ok()) return model.status();
+  if (absl::Status wanted = check_wanted(unwanted); !wanted.ok()) return wanted;
   std::vector<std::string> films;
   for (const simulation::FilmSpec& film : spec->films) films.push_back("film/" + film.name);
   const auto present = read_present(backend, id, films);
@@ -93,6 +94,7 @@ absl::StatusOr<TimedDeck> make_deck(Backend& backend, const std::string& id) {
     if (!pressure.ok()) return pressure.status();
     pressures.push_back(*std::move(pressure));
   }
+  if (absl::Status wanted = check_wanted(unwanted); !wanted.ok()) return wanted;
   auto deck = CalculixDeck::create(**model, *spec, pressures);
   if (!deck.ok()) return deck.status();
   return TimedDeck{*std::move(deck), present->frame.time_s()};
@@ -111,10 +113,11 @@ grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* export_tissue_deck(Backe
     stream->fail(valid);
     return stream;
   }
-  const bool taken = backend.calls.run([&backend, stream, id = *id] {
+  const bool taken = backend.calls.run([&backend, context, stream, id = *id] {
     std::optional<TimedDeck> deck;
-    const absl::Status made = guarded([&]() -> absl::Status {
-      auto ready = make_deck(backend, id);
+    const Unwanted unwanted = caller_has_left(context);
+    const absl::Status made = guarded_if_wanted(unwanted, [&]() -> absl::Status {
+      auto ready = make_deck(backend, id, unwanted);
       if (ready.ok()) deck.emplace(*std::move(ready));
       return ready.status();
     });

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "absl/status/status.h"
+#include "core/base/unwanted.h"
 #include "server/rpc/backend.h"
 #include "server/rpc/call.h"
 #include "server/rpc/call_gate.h"
@@ -29,6 +30,18 @@ absl::Status guarded(Work&& work) {
   } catch (const std::exception& error) {
     return absl::InternalError(error.what());
   }
+}
+
+/// The same, unless nobody wants it: CANCELLED.
+template <typename Work>
+absl::Status guarded_if_wanted(const Unwanted& unwanted, Work&& work) {
+  const absl::Status wanted = check_wanted(unwanted);
+  return wanted.ok() ? guarded(work) : wanted;
+}
+
+/// True once whoever called has cancelled, has gone, or has a deadline that has passed. Until the call was answered.
+inline Unwanted caller_has_left(grpc::CallbackServerContext* context) {
+  return [context] { return context->IsCancelled(); };
 }
 
 /// Whether a call is to be carried out with this request: admitted, a message this schema knows, and about nothing that
@@ -64,7 +77,7 @@ inline absl::Status too_many_calls(const Backend& backend) {
                   "too many long calls are waiting, the bound is " + std::to_string(backend.calls.max_queued()));
 }
 
-/// Answers a call from the pool for long calls.
+/// Answers a call from the pool for long calls. One whose caller has left by then is not begun.
 template <typename Request>
 grpc::ServerUnaryReactor* answer_later(grpc::CallbackServerContext* context, const Request* request, Backend& backend,
                                        std::function<absl::Status()> work) {
@@ -73,10 +86,11 @@ grpc::ServerUnaryReactor* answer_later(grpc::CallbackServerContext* context, con
     reactor->Finish(to_grpc_status(valid));
     return reactor;
   }
-  const bool taken = backend.calls.run([reactor, work = std::move(work), fields = call_of(context).log_fields()] {
-    const LogScope scope(fields);
-    reactor->Finish(to_grpc_status(guarded(work)));
-  });
+  const bool taken =
+      backend.calls.run([context, reactor, work = std::move(work), fields = call_of(context).log_fields()] {
+        const LogScope scope(fields);
+        reactor->Finish(to_grpc_status(guarded_if_wanted(caller_has_left(context), work)));
+      });
   if (!taken) {
     reactor->Finish(to_grpc_status(too_many_calls(backend)));
   }

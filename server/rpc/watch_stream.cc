@@ -37,6 +37,11 @@ void WatchStream::hold() {
   self_ = shared_from_this();
 }
 
+bool WatchStream::has_ended() {
+  const std::lock_guard lock(mutex_);
+  return finished_;
+}
+
 void WatchStream::begin_kept(const std::shared_ptr<const KeptMessages>& kept) {
   std::unique_lock lock(mutex_);
   if (finished_) return;

@@ -44,6 +44,8 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
                            std::function<void()> on_done);
   /// Keeps it, for a begin that comes later from another thread.
   void hold();
+  /// The client has left, or the stream has ended otherwise: a begin would show nothing.
+  bool has_ended();
   /// A stream of messages that are all there.
   void begin_kept(const std::shared_ptr<const KeptMessages>& kept);
   /// A stream that ends at once.

@@ -5,6 +5,7 @@
 #include "core/base/error_hints.h"
 #include "core/base/field_violations.h"
 #include "core/base/hash.h"
+#include "core/base/unwanted.h"
 
 namespace lipofill {
 namespace {
@@ -53,6 +54,12 @@ TEST(ErrorHints, TravelWithAStatus) {
   EXPECT_EQ(hints_of(with_hints(absl::InternalError(""), {"BROKEN", std::nullopt}))->retry_delay_s, std::nullopt);
   EXPECT_FALSE(hints_of(absl::UnavailableError("later")));
   EXPECT_TRUE(with_hints(absl::OkStatus(), {"FINE", 1.0}).ok());
+}
+
+TEST(Unwanted, IsCancelled) {
+  EXPECT_TRUE(check_wanted(nullptr).ok());
+  EXPECT_TRUE(check_wanted([] { return false; }).ok());
+  EXPECT_TRUE(absl::IsCancelled(check_wanted([] { return true; })));
 }
 
 TEST(Hasher, GivesTheDigestsOfFips180) {

@@ -63,7 +63,7 @@ TEST(SurfaceDistance, StatisticsAreThoseOfTheMagnitudes) {
 TEST(SurfaceDistance, OfAPatchLeavesOutWhatLiesBesideIt) {
   const SurfaceMesh patch = make_plate(0.004, 0.04, 8);
   const SurfaceMesh target = make_plate(0.0, 0.2, 50);
-  const PatchDistance distance = compute_patch_distance(patch, target);
+  const PatchDistance distance = *compute_patch_distance(patch, target);
   EXPECT_EQ(distance.patch_to_target.size(), static_cast<size_t>(patch.n_vertices()));
   EXPECT_NEAR(distance.patch_to_target_statistics.mean, 0.004, 1e-9);
   EXPECT_NEAR(distance.target_to_patch_statistics.max, 0.004, 1e-9);
@@ -74,8 +74,22 @@ TEST(SurfaceDistance, OfAPatchLeavesOutTheFarSideOfAClosedTarget) {
   const SurfaceMesh whole = make_sphere(0.05, 24);
   SurfaceMesh cap = make_sphere(0.052, 24);
   std::erase_if(cap.triangles, [&](const std::array<int, 3>& t) { return cap.points(2, t[0]) < 0.04; });
-  const PatchDistance distance = compute_patch_distance(cap, whole);
+  const PatchDistance distance = *compute_patch_distance(cap, whole);
   EXPECT_NEAR(distance.target_to_patch_statistics.max, 0.002, 1e-4);
+}
+
+TEST(SurfaceDistance, IsGivenUpWhereverItIsOnceNobodyWantsIt) {
+  const SurfaceMesh patch = make_sphere(0.052, 24);
+  const SurfaceMesh target = make_sphere(0.05, 24);
+  int n_asked = 0;
+  ASSERT_TRUE(compute_patch_distance(patch, target, [&] { return ++n_asked < 0; }).ok());
+  EXPECT_GE(n_asked, 3 * patch.n_vertices() / 256) << "in each of its three parts";
+  for (int patience = 0; patience < n_asked; ++patience) {
+    int n_before = 0;
+    const auto given_up = compute_patch_distance(patch, target, [&] { return ++n_before > patience; });
+    EXPECT_TRUE(absl::IsCancelled(given_up.status()));
+    EXPECT_EQ(n_before, patience + 1) << "asked once more";
+  }
 }
 
 }  // namespace

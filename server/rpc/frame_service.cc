@@ -116,7 +116,7 @@ absl::Status FrameService::begin(grpc::CallbackServerContext* context, const grp
   stream = std::make_shared<WatchStream>(backend_.courier, backend_.metrics, request->known_topology_hash(),
                                          std::move(place));
   if (const auto& expires = call_of(context).principal.expires) stream->end_at(to_steady(*expires));
-  if (const auto session = backend_.sessions.find(*id); session != nullptr) {
+  if (const auto session = backend_.sessions.hold(*id); session != nullptr) {
     return watch_session(*request, session, stream);
   }
   const auto record = backend_.store.get_simulation(*id);

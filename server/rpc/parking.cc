@@ -23,14 +23,13 @@ bool is_parked(const SimulationRecord& record) {
 }
 
 absl::StatusOr<std::shared_ptr<Session>> find_or_wake(Backend& backend, const std::string& id) {
-  if (auto session = backend.sessions.find(id); session != nullptr) return session;
+  if (auto session = backend.sessions.hold(id); session != nullptr) return session;
   const std::lock_guard lock(backend.waking);
-  if (auto session = backend.sessions.find(id); session != nullptr) return session;  // another was first
+  if (auto session = backend.sessions.hold(id); session != nullptr) return session;  // another was first
   const auto record = backend.store.get_simulation(id);
   if (!record.ok()) return record.status();
   if (!is_parked(*record)) return nullptr;
-  if (absl::Status woken = wake_simulation(backend, *record); !woken.ok()) return woken;
-  return backend.sessions.find(id);
+  return wake_simulation(backend, *record);
 }
 
 ParkingAttendant::ParkingAttendant(Backend& backend, Seconds idle) : backend_(backend), idle_(idle) {

@@ -169,7 +169,10 @@ void ResultKeeper::stepped(const SeriesEntry& entry) {
 absl::Status ResultKeeper::parked(const std::string& id, const SessionView& view) {
   const absl::Status kept = store_.keep_summary(id, to_summary(view).SerializeAsString());
   if (!kept.ok()) return kept;
-  sessions_.remove(id);
+  if (!sessions_.remove_unless_held(id)) {
+    store_.keep_summary(id, "").IgnoreError();
+    return absl::AbortedError("something is asked of it at this moment");
+  }
   metrics_.count_parked_simulation();
   return kept;
 }

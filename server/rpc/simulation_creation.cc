@@ -120,6 +120,7 @@ absl::StatusOr<v1::Simulation> open_session(Backend& backend, SessionManager::Pl
                                             bool start) {
   const auto ids = parse_model_name(record.model, "spec.model");
   // From here on the model is held by the record, but it may have gone before that.
+  const auto held = hold(session);
   absl::Status open = ids.ok() ? backend.store.get_model(ids->patient, ids->id).status() : ids.status();
   if (open.ok() && !backend.sessions.add(std::move(place), session)) {
     open = draining();

@@ -191,17 +191,18 @@ absl::Status bring_back_simulations(Backend& backend) {
   return absl::OkStatus();
 }
 
-absl::Status wake_simulation(Backend& backend, const SimulationRecord& record) {
+absl::StatusOr<std::shared_ptr<Session>> wake_simulation(Backend& backend, const SimulationRecord& record) {
   auto place = backend.sessions.reserve(record.tenant);
   if (!place.ok()) return place.status();
   auto revived = revive(backend, record);
   if (!revived.ok()) return revived.status();
   if (auto room = place->claim(revived->bytes); !room.ok()) return room;
   if (auto cleared = backend.store.keep_summary(record.id, ""); !cleared.ok()) return cleared;
+  auto held = hold(revived->session);
   if (!backend.sessions.add(*std::move(place), revived->session)) return draining();
-  revived->session->go_on();
+  held->go_on();
   spdlog::info("{} is in memory again", simulation_name(record.id));
-  return absl::OkStatus();
+  return held;
 }
 
 }  // namespace lipofill::server

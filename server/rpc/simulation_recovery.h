@@ -11,7 +11,7 @@ namespace lipofill::server {
 /// Those that were parked stay so.
 absl::Status bring_back_simulations(Backend& backend);
 
-/// The same for one that was parked. RESOURCE_EXHAUSTED when there is no room for it now.
-absl::Status wake_simulation(Backend& backend, const SimulationRecord& record);
+/// The same for one that was parked; it is held. RESOURCE_EXHAUSTED when there is no room for it now.
+absl::StatusOr<std::shared_ptr<Session>> wake_simulation(Backend& backend, const SimulationRecord& record);
 
 }  // namespace lipofill::server

@@ -104,7 +104,7 @@ Reactor* SimulationService::command(Context* context, const Request* request, v1
     if (!id.ok()) return id.status();
     if (const absl::Status valid = check_request_id(request->request_id()); !valid.ok()) return valid;
     const RequestKey key = make_request_key(call_of(context).principal, what, request->request_id(), *request);
-    if (const auto session = backend_.sessions.find(*id); session != nullptr) {
+    if (const auto session = backend_.sessions.hold(*id); session != nullptr) {
       answered = true;
       act(*session, key, reply_to(backend_, *id, reactor, response, amend));
       return absl::OkStatus();
@@ -202,7 +202,7 @@ Reactor* SimulationService::StopSimulation(Context* context, const v1::StopSimul
 Reactor* SimulationService::DeleteSimulation(Context* context, const v1::DeleteSimulationRequest* request,
                                              google::protobuf::Empty*) {
   const auto id = parse_simulation_name(request->name(), "name");
-  const auto session = id.ok() ? backend_.sessions.find(*id) : nullptr;
+  const auto session = id.ok() ? backend_.sessions.hold(*id) : nullptr;
   if (session != nullptr && check_call(context, *request).ok()) {
     Reactor* reactor = context->DefaultReactor();
     session->abandon(

@@ -220,11 +220,7 @@ void Session::conclude() {
   spdlog::info("simulations/{} is {} after {} steps, {:.3f} s simulated{}{}", options_.id, state_name(view_.state),
                view_.report.step, view_.report.time, view_.reason.empty() ? "" : ": ", view_.reason);
   judge_preview();
-  const SessionView view = full_view();
-  {
-    const std::lock_guard lock(view_mutex_);
-    view_ = view;
-  }
+  show_figures(full_view());
   topology();
   last_frame_ = make_frame({}, true);
   if (const absl::Status kept = keep_result(); !kept.ok()) {

@@ -106,8 +106,10 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   /// For the end of the daemon: no step and no command any more, the state kept.
   void suspend(Done done);
 
-  /// How long nothing was asked of it but figures; 0 while it runs, is watched or catches up. Without waiting.
+  /// How long nothing was asked of it but figures; 0 while it runs, is watched, is held or catches up. Without waiting.
   Clock::duration idle_time() const;
+  /// By hold(), or by a command that waits for its turn.
+  bool is_held() const { return holders_ > 0 || !mailbox_empty(); }
   /// If it still is idle for so long, keeps its state and figures, after which it answers nothing any more but that it
   /// is parked.
   void park(std::chrono::duration<double> idle);
@@ -129,6 +131,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   WorkerPool::Next take_turn() override;
 
  private:
+  friend class HeldSession;
   using Command = std::function<void()>;
 
   void post(Command command);
@@ -179,6 +182,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   absl::Status go_back(RestoreOrder& order, const RequestKey& request);
 
   void update_view();
+  void show_figures(SessionView view);
   SessionView full_view();
   std::shared_ptr<const Topology> topology();
   std::shared_ptr<const Frame> make_frame(const std::vector<std::string>& meshes, bool end);
@@ -228,6 +232,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   std::shared_ptr<const Frame> preview_frame_;    ///< once it is done
 
   std::atomic<int> watching_ = 0;  ///< between watch() and unwatch()
+  std::atomic<int> holders_ = 0;   ///< see hold()
 
   std::atomic<Clock::time_point> last_asked_ = Clock::now();
 
@@ -235,5 +240,9 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   SessionView view_;
   std::vector<SeriesEntry> pending_;
 };
+
+/// The session, which is not parked as long as this is kept: for whoever is about to ask something of it. Null for
+/// null.
+std::shared_ptr<Session> hold(const std::shared_ptr<Session>& session);
 
 }  // namespace lipofill::server

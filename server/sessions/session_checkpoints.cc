@@ -71,25 +71,52 @@ void Session::save(Done done) {
 Session::Clock::duration Session::idle_time() const {
   const std::lock_guard lock(view_mutex_);
   const bool rests = view_.state == SimulationState::kReady || view_.state == SimulationState::kPaused;
-  return rests && watching_ == 0 ? Clock::now() - last_asked_.load() : Clock::duration::zero();
+  const bool is_free = watching_ == 0 && !is_held();
+  return rests && is_free ? Clock::now() - last_asked_.load() : Clock::duration::zero();
+}
+
+/// Counts a holder of a session.
+class HeldSession {
+ public:
+  explicit HeldSession(std::shared_ptr<Session> session) : session_(std::move(session)) { ++session_->holders_; }
+  HeldSession(const HeldSession&) = delete;
+  HeldSession& operator=(const HeldSession&) = delete;
+  ~HeldSession() {
+    session_->last_asked_ = Session::Clock::now();
+    --session_->holders_;
+  }
+  Session* get() const { return session_.get(); }
+
+ private:
+  const std::shared_ptr<Session> session_;
+};
+
+std::shared_ptr<Session> hold(const std::shared_ptr<Session>& session) {
+  if (session == nullptr) return nullptr;
+  const auto held = std::make_shared<HeldSession>(session);
+  return {held, held->get()};
 }
 
 bool Session::can_be_parked(Clock::duration idle) const {
-  return simulation_ != nullptr && !suspended_ && !catching_up_ && viewers_.empty() && mailbox_empty() &&
-         idle_time() >= idle;
+  return simulation_ != nullptr && !suspended_ && !catching_up_ && viewers_.empty() && idle_time() >= idle;
 }
 
 void Session::park(std::chrono::duration<double> idle) {
   post([this, idle] {
     if (!can_be_parked(std::chrono::duration_cast<Clock::duration>(idle))) return;
-    const absl::Status parked = guarded([this] {
+    SessionView view;
+    const absl::Status parked = guarded([this, &view] {
       const absl::Status saved = save_now();
-      return saved.ok() ? sink_.parked(options_.id, full_view()) : saved;
+      if (!saved.ok()) return saved;
+      view = full_view();
+      return sink_.parked(options_.id, view);
     });
+    if (absl::IsAborted(parked)) return;
     if (!parked.ok()) {
       last_asked_ = Clock::now();  // try again after as long
       return spdlog::error("simulations/{} cannot be parked: {}", options_.id, parked.ToString());
     }
+    show_figures(std::move(view));
     suspended_ = parked_ = true;
     let_go();
     spdlog::info("simulations/{} is parked at step {}", options_.id, view_.report.step);

@@ -70,6 +70,12 @@ void Session::update_view() {
   view_.cost = cost_;
 }
 
+/// From now on, when there is no simulation to take them from.
+void Session::show_figures(SessionView view) {
+  const std::lock_guard lock(view_mutex_);
+  view_ = std::move(view);
+}
+
 SessionView Session::full_view() {
   if (simulation_ != nullptr) update_view();
   SessionView view = cached_view();

@@ -87,14 +87,34 @@ std::shared_ptr<Session> SessionManager::find(const std::string& id) const {
   return found == sessions_.end() ? nullptr : found->second.session;
 }
 
+std::shared_ptr<Session> SessionManager::hold(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = sessions_.find(id);
+  return found == sessions_.end() ? nullptr : server::hold(found->second.session);
+}
+
 void SessionManager::remove(const std::string& id) {
   std::shared_ptr<Session> last;  // destroyed outside the lock
   const std::lock_guard lock(mutex_);
+  last = take_out(id);
+}
+
+bool SessionManager::remove_unless_held(const std::string& id) {
+  std::shared_ptr<Session> last;
+  const std::lock_guard lock(mutex_);
   const auto found = sessions_.find(id);
-  if (found == sessions_.end()) return;
-  last = std::move(found->second.session);
+  if (found != sessions_.end() && found->second.session->is_held()) return false;
+  last = take_out(id);
+  return true;
+}
+
+std::shared_ptr<Session> SessionManager::take_out(const std::string& id) {
+  const auto found = sessions_.find(id);
+  if (found == sessions_.end()) return nullptr;
+  std::shared_ptr<Session> session = std::move(found->second.session);
   give_back(found->second.tenant, found->second.bytes);
   sessions_.erase(found);
+  return session;
 }
 
 std::vector<std::shared_ptr<Session>> SessionManager::all() const {

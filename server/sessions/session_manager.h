@@ -48,8 +48,13 @@ class SessionManager {
   absl::StatusOr<Place> reserve(const std::string& tenant);
   /// False once suspend_all() was called.
   [[nodiscard]] bool add(Place place, std::shared_ptr<Session> session);
+  /// For a look at it: it may be parked at any moment.
   std::shared_ptr<Session> find(const std::string& id) const;
+  /// For whoever is about to ask something of it; see hold(Session).
+  std::shared_ptr<Session> hold(const std::string& id) const;
   void remove(const std::string& id);
+  /// False when it is held: then it stays.
+  [[nodiscard]] bool remove_unless_held(const std::string& id);
   /// Adds one that was there before the daemon was started again, whatever the bounds, and lets it go on.
   void bring_back(const std::string& tenant, uint64_t bytes, std::shared_ptr<Session> session);
 
@@ -77,6 +82,7 @@ class SessionManager {
   // With the mutex held.
   void take(const std::string& tenant);
   void give_back(const std::string& tenant, uint64_t bytes);
+  std::shared_ptr<Session> take_out(const std::string& id);
 
   const SessionBounds bounds_;
   mutable std::mutex mutex_;

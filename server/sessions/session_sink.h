@@ -83,7 +83,7 @@ class SessionSink {
   /// After every step, for figures of the daemon; must not block.
   virtual void stepped(const SeriesEntry&) {}
   /// Its state was kept just before and it is at rest: after this succeeds the session can be forgotten, and another be
-  /// made of what was kept.
+  /// made of what was kept. ABORTED when somebody holds it: it stays.
   virtual absl::Status parked(const std::string& id, const SessionView& view) = 0;
   /// After this succeeds the session can be forgotten: the store knows all of it.
   virtual absl::Status ended(const std::string& id, const SessionView& view, const Topology& topology,

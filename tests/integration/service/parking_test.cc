@@ -1,5 +1,6 @@
 // Simulations that nobody asks for are kept on disk alone, and come back when somebody does, as if they had never left.
 
+#include <random>
 #include <thread>
 
 #include "tests/integration/service/run_fixture.h"
@@ -11,7 +12,7 @@ using Simulations = v1::SimulationService::Stub;
 
 class ParkingTest : public RunTest {
  protected:
-  ParkingTest() : RunTest({"--park-after-s", "0.2"}) {}
+  explicit ParkingTest(const std::string& after_s = "0.2") : RunTest({"--park-after-s", after_s}) {}
 
   v1::Simulation await_parked(const std::string& name) {
     v1::Simulation simulation = get_simulation(name);
@@ -22,8 +23,9 @@ class ParkingTest : public RunTest {
     EXPECT_TRUE(simulation.parked()) << name;
     return simulation;
   }
-  /// Paused at some step of a run of `end_s`.
-  v1::Simulation pause_on_the_way(const std::string& id, double end_s) {
+  /// Paused at some step of a run of `end_s`, which is so far away that it does not end before, however late the pause
+  /// comes.
+  v1::Simulation pause_on_the_way(const std::string& id, double end_s = 1e5) {
     v1::SimulationSpec plan = square_plan(model_.name(), end_s);
     plan.set_pace(v1::REAL_TIME);
     v1::Simulation simulation;
@@ -37,8 +39,8 @@ class ParkingTest : public RunTest {
 
 TEST_F(ParkingTest, OneThatIsResumedEndsAsIfItHadStayed) {
   v1::Simulation straight;
-  ASSERT_TRUE(create_simulation(square_plan(model_.name(), 0.6), "straight", true, straight).ok());
-  const v1::Simulation paused = pause_on_the_way("x", 0.6);
+  ASSERT_TRUE(create_simulation(square_plan(model_.name(), 3.0), "straight", true, straight).ok());
+  const v1::Simulation paused = pause_on_the_way("x", 3.0);
   const v1::Simulation parked = await_parked("simulations/x");
   EXPECT_EQ(parked.state(), v1::Simulation::PAUSED);
   EXPECT_EQ(parked.summary().steps(), paused.summary().steps());
@@ -54,7 +56,7 @@ TEST_F(ParkingTest, OneThatIsResumedEndsAsIfItHadStayed) {
 }
 
 TEST_F(ParkingTest, StaysParkedWhenTheDaemonIsKilledAndComesBackWhenAsked) {
-  const v1::Simulation paused = pause_on_the_way("x", 0.3);
+  const v1::Simulation paused = pause_on_the_way("x");
   create(0.3, "y", false);
   await_parked("simulations/x");
   await_parked("simulations/y");
@@ -66,7 +68,7 @@ TEST_F(ParkingTest, StaysParkedWhenTheDaemonIsKilledAndComesBackWhenAsked) {
 }
 
 TEST_F(ParkingTest, EveryCallThatNeedsItBringsItBack) {
-  const v1::Simulation paused = pause_on_the_way("x", 0.3);
+  const v1::Simulation paused = pause_on_the_way("x");
   const std::string name = "simulations/x";
 
   await_parked(name);
@@ -114,7 +116,7 @@ TEST_F(ParkingTest, OneThatIsParkedCanBeDeleted) {
 }
 
 TEST_F(ParkingTest, ManyWhoAskAtOnceGetTheSameOne) {
-  const v1::Simulation paused = pause_on_the_way("x", 1e5);
+  const v1::Simulation paused = pause_on_the_way("x");
   await_parked("simulations/x");
   std::vector<std::jthread> callers;
   std::atomic<int> answered = 0;
@@ -129,6 +131,37 @@ TEST_F(ParkingTest, ManyWhoAskAtOnceGetTheSameOne) {
   }
   callers.clear();
   EXPECT_EQ(answered, 8);
+}
+
+/// Parks whatever nobody asks for at this very moment.
+class HastyParkingTest : public ParkingTest {
+ protected:
+  HastyParkingTest() : ParkingTest("0.001") {}
+};
+
+TEST_F(HastyParkingTest, NobodyIsTurnedAwayBecauseItIsBeingParked) {
+  v1::Simulation simulation;
+  for (const char* id : {"a", "b", "c", "d"}) {
+    ASSERT_TRUE(create_simulation(square_plan(model_.name(), 1e5), id, true, simulation).ok()) << "READY for a moment";
+    EXPECT_EQ(simulation.state(), v1::Simulation::RUNNING);
+    ASSERT_TRUE(stop(simulation.name()).ok());
+  }
+  create(1e5, "x", false);
+  const auto inject = parse_text<v1::InjectRequest>(
+      "name: 'simulations/x' validate_only: true injection { zone: 'middle' volume_ml: 0.01 rate_ml_per_s: 0.1 }");
+  const auto watch = watch_request("simulations/x", v1::WatchRequest::LATEST);
+  std::mt19937 random(3);
+  for (int i = 0; i < 60; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 60));
+    const grpc::Status foreseen = call(*simulations_, &Simulations::Inject, inject, simulation);
+    EXPECT_TRUE(foreseen.ok()) << i << ": " << foreseen.error_message();
+    if (i % 3 > 0) continue;
+    std::this_thread::sleep_for(std::chrono::milliseconds(random() % 60));
+    Watcher watcher(*channel_, watch);
+    SeenFrame frame;
+    EXPECT_TRUE(watcher.next(frame)) << i;
+    watcher.cancel();
+  }
 }
 
 }  // namespace

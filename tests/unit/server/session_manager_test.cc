@@ -56,6 +56,24 @@ TEST_F(SessionTest, TheManagerBoundsEachTenant) {
   EXPECT_TRUE(manager.reserve("practice").ok());
 }
 
+TEST_F(SessionTest, OneThatIsHeldIsNotParked) {
+  SessionManager manager({});
+  ASSERT_TRUE(manager.add(*manager.reserve("clinic"), session("a", 1.0)));
+  auto one = manager.hold("a");
+  auto other = manager.hold("a");
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  EXPECT_EQ(one->idle_time(), Session::Clock::duration::zero());
+  EXPECT_FALSE(manager.remove_unless_held("a"));
+  one = nullptr;
+  EXPECT_FALSE(manager.remove_unless_held("a"));
+  const auto let_go = Session::Clock::now();
+  other = nullptr;
+  const auto idle = manager.find("a")->idle_time();
+  EXPECT_LE(idle, Session::Clock::now() - let_go) << "as if something was asked just now";
+  EXPECT_TRUE(manager.remove_unless_held("a"));
+  EXPECT_EQ(manager.hold("a"), nullptr);
+}
+
 TEST_F(SessionTest, TheManagerBoundsMemory) {
   SessionManager manager({.memory_bytes = 100});
   {

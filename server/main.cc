@@ -1,10 +1,13 @@
 // lipofilld: opens the store, serves until SIGTERM or SIGINT, drains.
 
+#include <sys/stat.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 
+#include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "server/ops/drain_guard.h"
 #include "server/ops/logging.h"
@@ -84,8 +87,8 @@ absl::Status serve_until_signal(const Options& options, const Backend& backend, 
     if (auto written = write_port(options.port_file, server.port()); !written.ok()) return written;
   }
   const std::string where = absl::StrJoin(options.listen, ", ");
-  spdlog::info("lipofilld serves {} (port {}) with {} workers, data in {}", where, server.port(), options.workers,
-               options.data);
+  const std::string port = server.port() > 0 ? absl::StrCat(" (port ", server.port(), ")") : "";
+  spdlog::info("lipofilld serves {}{} with {} workers, data in {}", where, port, options.workers, options.data);
   const ServiceManager manager;
   manager.tell_ready("serving " + where);
   const int signal = wait_for_signal(manager.watchdog_period(), [&backend, &manager] {
@@ -162,6 +165,7 @@ int main(int argc, char** argv) {
   const auto options = parse_options(argc, argv, exit_code);
   if (!options) return exit_code;
   set_up_logging(options->log_level, options->log_format);
+  ::umask(S_IRWXG | S_IRWXO);  // all that it writes is of patients
   take_signals();
   try {
     const absl::Status served = copies_store(*options) ? copy_store(*options) : serve(*options);

@@ -63,7 +63,13 @@ bool is_unix(const std::string& address) {
   return absl::StartsWith(address, "unix:");
 }
 
-/// Made with whatever umask there is; it is for the daemon's user and group.
+absl::Status cannot_listen(const std::string& address) {
+  return absl::UnavailableError(
+      absl::StrCat("cannot listen on ", address,
+                   is_unix(address) ? ": may this user make files in its directory?" : ": is the port taken?"));
+}
+
+/// For the daemon's user and group.
 void restrict_sockets(const std::vector<std::string>& addresses) {
   for (const std::string& address : addresses) {
     if (!is_unix(address)) continue;
@@ -105,10 +111,9 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<
   builder.RegisterService(&self->simulations_);
   builder.RegisterService(&self->frames_);
   self->server_ = builder.BuildAndStart();
-  if (self->server_ == nullptr || std::count(ports.begin(), ports.end(), 0) > 0) {
-    return absl::UnavailableError(
-        absl::StrCat("cannot listen on ", absl::StrJoin(addresses, ", "), "; is the port taken?"));
-  }
+  const auto failed = std::find(ports.begin(), ports.end(), 0);
+  if (failed != ports.end()) return cannot_listen(addresses[failed - ports.begin()]);
+  if (self->server_ == nullptr) return cannot_listen(absl::StrJoin(addresses, ", "));
   restrict_sockets(addresses);
   for (size_t i = addresses.size(); i-- > 0;) {
     if (!is_unix(addresses[i])) self->port_ = ports[i];

@@ -111,5 +111,33 @@ TEST_F(UnixSocketTest, ServesBesideTcpAndOnlyForUserAndGroup) {
   EXPECT_EQ(again.terminate(), 0);
 }
 
+TEST_F(UnixSocketTest, SaysThatItsDirectoryCannotBeWrittenTo) {
+  const std::string address = "unix:" + directory_.file("no such directory") + "/socket";
+  std::string output;
+  EXPECT_EQ(run_daemon_to_end({"--data", directory_.file("data"), "--listen", address}, output), 1);
+  EXPECT_THAT(output, HasSubstr("cannot listen on " + address + ": may this user make files in its directory?"));
+}
+
+/// Also in a directory that others may look into.
+TEST_F(ConfigurationTest, WhatItWritesIsForItsUserAlone) {
+  const std::filesystem::path data = directory_.file("data");
+  std::filesystem::create_directory(data);
+  {
+    DaemonProcess daemon(data);
+    const auto patients =
+        v1::PatientService::NewStub(grpc::CreateChannel(daemon.address(), grpc::InsecureChannelCredentials()));
+    v1::Patient patient;
+    ASSERT_TRUE(call(*patients, &v1::PatientService::Stub::CreatePatient, v1::CreatePatientRequest(), patient).ok());
+    EXPECT_EQ(daemon.terminate(), 0);
+  }
+  int entries = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(data)) {
+    using std::filesystem::perms;
+    EXPECT_EQ(entry.status().permissions() & (perms::group_all | perms::others_all), perms::none) << entry.path();
+    ++entries;
+  }
+  EXPECT_GE(entries, 4) << "the database, the lock, scans and checkpoints";
+}
+
 }  // namespace
 }  // namespace lipofill::testing

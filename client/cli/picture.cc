@@ -1,6 +1,10 @@
 #include "client/cli/picture.h"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/process.h"
@@ -15,6 +19,14 @@ constexpr char kNoScreen[] =
 bool has_display() {
   const char* display = std::getenv("DISPLAY");
   return display != nullptr && *display != '\0';
+}
+
+/// Before the drawing process writes what its libraries say of it.
+absl::Status check_can_be_written(const std::filesystem::path& png) {
+  const std::filesystem::path folder = png.has_parent_path() ? png.parent_path() : ".";
+  if (::access(folder.c_str(), W_OK | X_OK) == 0) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat("cannot write ", png.string(), ": ", folder.string(), ": ", std::strerror(errno)));
 }
 
 absl::Status run_drawing(const std::vector<std::string>& command) {
@@ -33,6 +45,7 @@ absl::Status run_drawing(const std::vector<std::string>& command) {
 }  // namespace
 
 absl::Status draw_picture(const std::filesystem::path& folder, Picture picture, const std::filesystem::path& png) {
+  if (const absl::Status writable = check_can_be_written(png); !writable.ok()) return writable;
   std::vector<std::string> command = {this_program().string(), "render", folder.string(), "--out", png.string(),
                                       "--in-this-process"};
   if (picture == Picture::kDistance) command.push_back("--distance");

@@ -14,6 +14,7 @@ namespace lipofill::client {
 namespace {
 
 using google::protobuf::Descriptor;
+using google::protobuf::EnumDescriptor;
 using google::protobuf::FieldDescriptor;
 using nlohmann::json;
 
@@ -59,8 +60,28 @@ std::string describe_unknown(const Descriptor& type, const std::string& key) {
 void find_unknown_fields(const json& value, const Descriptor& type, const std::string& path,
                          std::vector<FieldViolation>* violations);
 
+/// Numbers stand for values too: what they mean is for the daemon to judge.
+void find_unknown_name(const json& value, const EnumDescriptor& type, const std::string& path,
+                       std::vector<FieldViolation>* violations) {
+  if (!value.is_string()) return;
+  const std::string& name = value.get_ref<const std::string&>();
+  if (type.FindValueByName(name) != nullptr) return;
+  std::string names;
+  for (int i = 0; i < type.value_count(); ++i) {
+    const bool stands_for_none = type.value(i)->name().ends_with("_UNSPECIFIED");
+    if (!stands_for_none) absl::StrAppend(&names, names.empty() ? "" : ", ", type.value(i)->name());
+  }
+  violations->push_back({path, absl::StrCat("is \"", name, "\", must be one of ", names)});
+}
+
 void find_unknown_in_field(const json& value, const FieldDescriptor& field, const std::string& path,
                            std::vector<FieldViolation>* violations) {
+  if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM) {
+    if (!value.is_array()) return find_unknown_name(value, *field.enum_type(), path, violations);
+    for (size_t i = 0; i < value.size(); ++i) {
+      find_unknown_name(value[i], *field.enum_type(), absl::StrCat(path, "[", i, "]"), violations);
+    }
+  }
   if (field.cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) return;
   if (field.is_map()) {
     const FieldDescriptor* mapped = field.message_type()->map_value();
@@ -114,7 +135,7 @@ absl::Status load_message(const std::filesystem::path& path, google::protobuf::M
   find_unknown_fields(*document, *message->GetDescriptor(), "", &violations);
   if (!violations.empty()) {
     for (FieldViolation& violation : violations) absl::StrAppend(&violation.description, " (in ", path.string(), ")");
-    return invalid_fields(absl::StrCat(path.string(), " has unknown fields"), violations);
+    return invalid_fields(absl::StrCat(path.string(), " has unknown fields or names"), violations);
   }
   const auto parsed = google::protobuf::util::JsonStringToMessage(document->dump(), message);
   if (!parsed.ok()) return absl::InvalidArgumentError(absl::StrCat(path.string(), ": ", std::string(parsed.message())));

@@ -82,6 +82,8 @@ TEST_F(BadInputTest, Volumes) {
 
 TEST_F(BadInputTest, PicturesOfNothing) {
   expect_failure("lipofill render .", 2, "not a folder that lipofill run has written");
+  expect_failure("lipofill render . --out nowhere/sheet.png", 2,
+                 "cannot write nowhere/sheet.png: nowhere: No such file");
   write("run.json", R"({"plan": "p", "simulation": "", "server": "", "data": "", "kept": false})");
   expect_failure("lipofill render .", 2, "holds no");
   write("skin_0000.vtp", "not XML");

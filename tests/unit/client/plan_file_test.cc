@@ -53,6 +53,16 @@ TEST_F(PlanFileTest, RefusesABoneWithoutASkinOrWithLandmarks) {
   EXPECT_EQ(violations[1].field, "bone.file");
 }
 
+TEST_F(PlanFileTest, SaysWhichNamesThereAreForOneThatThereIsNot) {
+  const auto plan = load_plan(write("plan.json", R"({"simulation": {"fat": {"preset": "COLEMANN"}, "coupling": 2,
+      "time": {"goal": "SETTLED_SHAPE"}}})"));
+  const auto violations = error_details_of(plan.status()).violations;
+  ASSERT_EQ(violations.size(), 1u);
+  EXPECT_EQ(violations[0].field, "simulation.fat.preset");
+  EXPECT_THAT(violations[0].description,
+              HasSubstr("is \"COLEMANN\", must be one of NEWTONIAN, COLEMAN, NANOFAT, SVF_GEL (in "));
+}
+
 TEST_F(PlanFileTest, NamesEveryUnknownFieldWithItsPathAndTheNearestName) {
   const auto plan =
       load_plan(write("plan.json", R"({"simulation": {"injections": [{"zone": "a"}, {"volume": 3}], "viscosity": 2},

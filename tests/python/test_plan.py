@@ -35,6 +35,14 @@ def test_an_unknown_field_is_named_with_its_path_and_the_nearest_name():
     assert "youngsModulusKpa" in violation.description or "youngs_modulus_kpa" in violation.description
 
 
+def test_a_name_that_there_is_not_is_answered_with_those_there_are():
+    with pytest.raises(lipofill.InvalidArgumentError) as caught:
+        lipofill.Plan.from_json('{"simulation": {"fat": {"preset": "COLEMANN"}}}')
+    (violation,) = caught.value.violations
+    assert violation.field == "simulation.fat.preset"
+    assert violation.description == 'is "COLEMANN", must be one of NEWTONIAN, COLEMAN, NANOFAT, SVF_GEL'
+
+
 def test_what_is_not_json_is_refused(tmp_path):
     (tmp_path / "plan.json").write_text("{")
     with pytest.raises(lipofill.InvalidArgumentError, match="plan.json"):

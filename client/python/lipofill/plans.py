@@ -21,6 +21,7 @@ PathLike = Union[str, "os.PathLike[str]"]
 Field = Union[float, geometry_pb2.ScalarField]
 
 _UNKNOWN_FIELD = re.compile(r'no field named "(?P<name>[^"]+)" at "Plan\.?(?P<path>[^"]*)".*?\[(?P<known>.*)\]', re.DOTALL)
+_UNKNOWN_NAME = re.compile(r"Invalid enum value (?P<name>.+) for enum type (?P<type>[\w.]+) at Plan\.(?P<path>[^\s\"]*)")
 
 
 def _field(value: Field) -> geometry_pb2.ScalarField:
@@ -28,7 +29,12 @@ def _field(value: Field) -> geometry_pb2.ScalarField:
 
 
 def _violations_of(message: str) -> Tuple[FieldViolation, ...]:
-    """The field that a parser's message complains of, with the nearest name there is."""
+    """The field that a parser's message complains of, with the nearest name there is, or all that its value may be."""
+    value = _UNKNOWN_NAME.search(message)
+    if value is not None:
+        known = plan_pb2.DESCRIPTOR.pool.FindEnumTypeByName(value["type"]).values_by_name
+        names = ", ".join(name for name in known if not name.endswith("_UNSPECIFIED"))
+        return (FieldViolation(value["path"].rstrip("."), f'is "{value["name"]}", must be one of {names}'),)
     found = _UNKNOWN_FIELD.search(message)
     if found is None:
         return ()
@@ -66,7 +72,8 @@ class Plan:
         Raises
         ------
         InvalidArgumentError
-            Naming the file, and as a violation the field that does not exist, with the nearest name that does.
+            Naming the file, and as a violation the field that does not exist, with the nearest name that does, or the
+            field whose value is no name it knows, with those it does.
         OSError
         """
         path = Path(path)

@@ -33,8 +33,8 @@ class VelocityField {
   Basis basis(const Vector2d& at) const {
     const auto along_xi = [&](int i, int j) { return side(i, j, i + 1, j); };
     const auto along_eta = [&](int i, int j) { return side(i, j, i, j + 1); };
-    const double x = std::clamp(at.x(), 0.0, static_cast<double>(grid_.n_xi));
-    const double y = std::clamp(at.y(), 0.0, static_cast<double>(grid_.n_eta));
+    const double x = move_inside(at.x(), grid_.n_xi);
+    const double y = move_inside(at.y(), grid_.n_eta);
     Basis b;
     b.g1 = extend(along_xi, grid_.n_xi, grid_.n_eta + 1, x - 0.5, y);
     b.g2 = extend(along_eta, grid_.n_xi + 1, grid_.n_eta, x, y - 0.5);
@@ -56,7 +56,9 @@ class VelocityField {
     return (f.x() * b.g1 + f.y() * b.g2) / b.sqrt_g;
   }
 
+  /// -1 outside all zones, and where a velocity beyond all measure leads, which is no place.
   int zone(const Vector2d& at) const {
+    if (!at.allFinite()) return -1;
     const int i = split(at.x(), grid_.n_xi).first;
     const int j = split(at.y(), grid_.n_eta).first;
     const int cell = grid_.cell_of_slot[j * grid_.n_xi + i];
@@ -64,8 +66,11 @@ class VelocityField {
   }
 
  private:
+  /// To [0, n]; what is no number to 0.
+  static double move_inside(double value, int n) { return value > 0.0 ? std::min(value, static_cast<double>(n)) : 0.0; }
+
   static std::pair<int, double> split(double value, int n) {
-    const double inside = std::clamp(value, 0.0, static_cast<double>(n));
+    const double inside = move_inside(value, n);
     const int index = std::min(static_cast<int>(inside), n - 1);
     return {index, inside - index};
   }

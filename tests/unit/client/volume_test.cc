@@ -149,6 +149,12 @@ TEST_F(VolumeTest, RefusesTruncatedFiles) {
   }
 }
 
+TEST_F(VolumeTest, RefusesAHeaderThatIsNoText) {
+  std::string bytes = nrrd(BallVolume(), "left-posterior-superior", "raw");
+  bytes.replace(bytes.find("kinds: domain"), 13, std::string("kinds: d\0\0\0\0\0", 13));
+  EXPECT_THAT(refusal_of("zero.nrrd", bytes), HasSubstr("has a byte of 0 in its header"));
+}
+
 TEST_F(VolumeTest, RefusesGarbageAndHugeHeaders) {
   std::string garbage(5000, '\0');
   for (size_t i = 0; i < garbage.size(); ++i) garbage[i] = static_cast<char>(i * 7919 % 251);

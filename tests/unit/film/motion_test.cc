@@ -152,6 +152,15 @@ TEST(Advection, LeavesAUniformFlowAloneAwayFromWalls) {
   }
 }
 
+/// What comes from beyond all numbers comes from nowhere: the velocity stays as it is.
+TEST(Advection, AVelocityBeyondAllMeasureIsNotCarried) {
+  const Box box(10, 1.0);
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(box.grid.n_edges());
+  for (int e = 0; e < box.grid.n_edges(); ++e) u[e] = box.grid.edges[e].direction == 0 ? 1e300 : 0.0;
+  const Eigen::VectorXd next = advect_velocity(box.grid, box.metric, u, 1e10);
+  for (int e = 0; e < box.grid.n_edges(); ++e) EXPECT_NEAR(next[e] * 1e-300, u[e] * 1e-300, 1e-12);
+}
+
 TEST(Advection, CarriesAPatternDownstream) {
   // A shear layer v(x) carried by a uniform u: v'(x) = v(x - u dt), to second order of interpolation.
   const auto error = [](int n) {

@@ -34,7 +34,6 @@ absl::StatusOr<HeaderText> read_header_text(const std::filesystem::path& file, c
     const size_t end = head.find('\n', begin);
     // A detached header may end without a line end.
     const std::string line = head.substr(begin, end == std::string::npos ? end : end - begin);
-    // VTK's reader of NRRD does not come to an end on such a line.
     if (line.find('\0') != std::string::npos) return bad_volume(file, "has a byte of 0 in its header, which is text");
     const std::string stripped(absl::StripAsciiWhitespace(line));
     if (begin == 0) text.first_line = stripped;

@@ -1,3 +1,6 @@
+#include <vtkDataArray.h>
+#include <vtkType.h>
+
 #include <cmath>
 #include <map>
 
@@ -9,16 +12,36 @@
 namespace lipofill::client {
 namespace {
 
-uint64_t bytes_of_type(const std::string& type) {
-  static const std::map<std::string, uint64_t> bytes = {
-      {"signed char", 1},  {"int8", 1},         {"int8_t", 1}, {"uchar", 1},          {"unsigned char", 1},
-      {"uint8", 1},        {"uint8_t", 1},      {"short", 2},  {"int16", 2},          {"int16_t", 2},
-      {"signed short", 2}, {"short int", 2},    {"ushort", 2}, {"unsigned short", 2}, {"uint16", 2},
-      {"uint16_t", 2},     {"int", 4},          {"int32", 4},  {"int32_t", 4},        {"signed int", 4},
-      {"uint", 4},         {"unsigned int", 4}, {"uint32", 4}, {"uint32_t", 4},       {"float", 4},
-      {"double", 8}};
-  const auto found = bytes.find(type);
-  return found == bytes.end() ? 0 : found->second;
+/// VTK's name for it, or 0.
+int vtk_type_of(const std::string& type) {
+  static const std::map<std::string, int> types = {{"signed char", VTK_SIGNED_CHAR},
+                                                   {"int8", VTK_SIGNED_CHAR},
+                                                   {"int8_t", VTK_SIGNED_CHAR},
+                                                   {"uchar", VTK_UNSIGNED_CHAR},
+                                                   {"unsigned char", VTK_UNSIGNED_CHAR},
+                                                   {"uint8", VTK_UNSIGNED_CHAR},
+                                                   {"uint8_t", VTK_UNSIGNED_CHAR},
+                                                   {"short", VTK_SHORT},
+                                                   {"short int", VTK_SHORT},
+                                                   {"signed short", VTK_SHORT},
+                                                   {"int16", VTK_SHORT},
+                                                   {"int16_t", VTK_SHORT},
+                                                   {"ushort", VTK_UNSIGNED_SHORT},
+                                                   {"unsigned short", VTK_UNSIGNED_SHORT},
+                                                   {"uint16", VTK_UNSIGNED_SHORT},
+                                                   {"uint16_t", VTK_UNSIGNED_SHORT},
+                                                   {"int", VTK_INT},
+                                                   {"signed int", VTK_INT},
+                                                   {"int32", VTK_INT},
+                                                   {"int32_t", VTK_INT},
+                                                   {"uint", VTK_UNSIGNED_INT},
+                                                   {"unsigned int", VTK_UNSIGNED_INT},
+                                                   {"uint32", VTK_UNSIGNED_INT},
+                                                   {"uint32_t", VTK_UNSIGNED_INT},
+                                                   {"float", VTK_FLOAT},
+                                                   {"double", VTK_DOUBLE}};
+  const auto found = types.find(type);
+  return found == types.end() ? 0 : found->second;
 }
 
 /// The signs that turn the file's space into LPS; none for a space that names no patient axes.
@@ -79,9 +102,14 @@ absl::StatusOr<VolumeHeader> parse_nrrd_header(const std::filesystem::path& file
   VolumeHeader header;
   header.format = VolumeFormat::kNrrd;
   header.size = *sizes;
-  header.bytes_per_voxel = bytes_of_type(text->value("type"));
-  if (header.bytes_per_voxel == 0)
+  header.vtk_type = vtk_type_of(text->value("type"));
+  if (header.vtk_type == 0)
     return bad_volume(file, absl::StrCat("has type \"", text->value("type"), "\", which is not supported"));
+  header.bytes_per_voxel = static_cast<uint64_t>(vtkDataArray::GetDataTypeSize(header.vtk_type));
+  const std::string endian = text->has("endian") ? text->value("endian") : "little";
+  if (endian != "little" && endian != "big")
+    return bad_volume(file, absl::StrCat("has endian \"", endian, "\", not little or big"));
+  header.big_endian = endian == "big";
   const std::string encoding = text->value("encoding");
   if (encoding != "raw" && encoding != "gzip" && encoding != "gz")
     return bad_volume(file, absl::StrCat("has encoding \"", encoding, "\", not raw or gzip"));

@@ -1,40 +1,17 @@
 #include "client/cpp/volume/volume_header.h"
 
-#include <zlib.h>
-
-#include <fstream>
-#include <vector>
-
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "client/cpp/volume/header_text.h"
+#include "client/cpp/volume/inflated_file.h"
 
 namespace lipofill::client {
 namespace {
 
-/// Bytes that a gzip or zlib stream from an offset of a file unpacks to, counted up to `enough`, in constant memory.
+/// Bytes that a compressed stream unpacks to, counted up to `enough`.
 uint64_t count_inflated_bytes(const std::filesystem::path& file, uint64_t offset, uint64_t enough) {
-  std::ifstream input(file, std::ios::binary);
-  input.seekg(static_cast<std::streamoff>(offset));
-  z_stream stream{};
-  constexpr int kDetectFormat = 15 + 32;
-  if (!input || inflateInit2(&stream, kDetectFormat) != Z_OK) return 0;
-  std::vector<unsigned char> packed(1 << 16), unpacked(1 << 18);
   uint64_t count = 0;
-  int result = Z_OK;
-  while (result == Z_OK && count < enough) {
-    if (stream.avail_in == 0) {
-      input.read(reinterpret_cast<char*>(packed.data()), static_cast<std::streamsize>(packed.size()));
-      stream.next_in = packed.data();
-      stream.avail_in = static_cast<uInt>(input.gcount());
-      if (stream.avail_in == 0) break;
-    }
-    stream.next_out = unpacked.data();
-    stream.avail_out = static_cast<uInt>(unpacked.size());
-    result = inflate(&stream, Z_NO_FLUSH);
-    count += unpacked.size() - stream.avail_out;
-  }
-  inflateEnd(&stream);
+  inflate_file(file, offset, [&](const unsigned char*, size_t bytes) { return (count += bytes) < enough; });
   return count;
 }
 

@@ -1,18 +1,23 @@
 #include "client/cpp/volume/volume_reader.h"
 
+#include <vtkByteSwap.h>
+#include <vtkDataArray.h>
 #include <vtkMatrix4x4.h>
 #include <vtkMetaImageReader.h>
 #include <vtkNIFTIImageHeader.h>
 #include <vtkNIFTIImageReader.h>
 #include <vtkNew.h>
-#include <vtkNrrdReader.h>
 #include <vtkPointData.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <fstream>
 
 #include "absl/strings/str_cat.h"
 #include "client/cpp/io/vtk_messages.h"
 #include "client/cpp/volume/header_text.h"
+#include "client/cpp/volume/inflated_file.h"
 
 namespace lipofill::client {
 namespace {
@@ -33,6 +38,39 @@ absl::Status take_voxels(const std::filesystem::path& file, vtkImageReader2* rea
   volume->voxels = vtkSmartPointer<vtkImageData>::New();
   volume->voxels->SetDimensions(size);
   volume->voxels->GetPointData()->SetScalars(image->GetPointData()->GetScalars());
+  return absl::OkStatus();
+}
+
+/// Without VTK's reader of NRRD, which has its own ideas of a header: on damaged ones it does not come to an end, or
+/// writes beyond its memory. Such volumes have one value a voxel, as many as the file has been found to hold.
+absl::Status take_nrrd_voxels(const std::filesystem::path& file, Volume* volume) {
+  const VolumeHeader& header = volume->header;
+  const uint64_t bytes = header.voxel_bytes();
+  const auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(header.vtk_type));
+  values->SetNumberOfTuples(static_cast<vtkIdType>(bytes / header.bytes_per_voxel));
+  char* voxels = static_cast<char*>(values->GetVoidPointer(0));
+  uint64_t read = 0;
+  if (header.compressed) {
+    inflate_file(header.data_file, header.data_offset, [&](const unsigned char* piece, size_t size) {
+      const auto taken = std::min<uint64_t>(size, bytes - read);
+      std::memcpy(voxels + read, piece, taken);
+      return (read += taken) < bytes;
+    });
+  } else {
+    std::ifstream input(header.data_file, std::ios::binary);
+    input.seekg(static_cast<std::streamoff>(header.data_offset));
+    input.read(voxels, static_cast<std::streamsize>(bytes));
+    read = static_cast<uint64_t>(input.gcount());
+  }
+  if (read < bytes) return bad_volume(file, "cannot be read to its end");
+  if (header.big_endian) {
+    vtkByteSwap::SwapVoidRange(voxels, static_cast<size_t>(values->GetNumberOfTuples()),
+                               static_cast<size_t>(header.bytes_per_voxel));
+  }
+  volume->voxels = vtkSmartPointer<vtkImageData>::New();
+  volume->voxels->SetDimensions(static_cast<int>(header.size[0]), static_cast<int>(header.size[1]),
+                                static_cast<int>(header.size[2]));
+  volume->voxels->GetPointData()->SetScalars(values);
   return absl::OkStatus();
 }
 
@@ -77,7 +115,7 @@ absl::StatusOr<Volume> read_volume(const std::filesystem::path& file) {
   if (header->format == VolumeFormat::kMetaImage) {
     status = take_voxels(file, vtkNew<vtkMetaImageReader>(), &volume);
   } else if (header->format == VolumeFormat::kNrrd) {
-    status = take_voxels(file, vtkNew<vtkNrrdReader>(), &volume);
+    status = take_nrrd_voxels(file, &volume);
   } else {
     vtkNew<vtkNIFTIImageReader> reader;
     status = take_voxels(file, reader, &volume);

@@ -85,6 +85,7 @@ TEST_F(VolumeTest, BallInNrrd) {
   const BallVolume ball;
   expect_ball("a.nrrd", nrrd(ball, "left-posterior-superior", "raw"), {25, 28, 31});
   expect_ball("gz.nrrd", nrrd(ball, "left-posterior-superior", "gzip"), {25, 28, 31});
+  expect_ball("big.nrrd", big_endian(nrrd(ball, "left-posterior-superior", "raw")), {25, 28, 31});
   expect_ball("ras.nrrd", nrrd(ball, "right-anterior-superior", "raw"), {-25, -28, 31});
 }
 

@@ -1,3 +1,6 @@
+#include <vtkDataArray.h>
+#include <vtkType.h>
+
 #include <map>
 
 #include "absl/strings/ascii.h"
@@ -45,12 +48,34 @@ absl::Status set_geometry(const std::filesystem::path& file, const HeaderText& t
   return absl::OkStatus();
 }
 
-uint64_t bytes_of_type(const std::string& type) {
-  static const std::map<std::string, uint64_t> bytes = {{"MET_CHAR", 1},   {"MET_UCHAR", 1}, {"MET_SHORT", 2},
-                                                        {"MET_USHORT", 2}, {"MET_INT", 4},   {"MET_UINT", 4},
-                                                        {"MET_FLOAT", 4},  {"MET_DOUBLE", 8}};
-  const auto found = bytes.find(type);
-  return found == bytes.end() ? 0 : found->second;
+/// VTK's name for it, or 0.
+int vtk_type_of(const std::string& type) {
+  static const std::map<std::string, int> types = {{"MET_CHAR", VTK_SIGNED_CHAR}, {"MET_UCHAR", VTK_UNSIGNED_CHAR},
+                                                   {"MET_SHORT", VTK_SHORT},      {"MET_USHORT", VTK_UNSIGNED_SHORT},
+                                                   {"MET_INT", VTK_INT},          {"MET_UINT", VTK_UNSIGNED_INT},
+                                                   {"MET_FLOAT", VTK_FLOAT},      {"MET_DOUBLE", VTK_DOUBLE}};
+  const auto found = types.find(type);
+  return found == types.end() ? 0 : found->second;
+}
+
+/// What one scalar a voxel, in binary, on a grid of three axes takes.
+absl::Status set_voxels(const std::filesystem::path& file, const HeaderText& text, VolumeHeader* header) {
+  const std::string dimensions = text.value("ndims");
+  if (!dimensions.empty() && dimensions != "3")
+    return bad_volume(file, absl::StrCat("has NDims ", dimensions, ", not 3"));
+  header->vtk_type = vtk_type_of(text.value("elementtype"));
+  if (header->vtk_type == 0) {
+    return bad_volume(file,
+                      absl::StrCat("has ElementType \"", text.value("elementtype"), "\", which is not a scalar type"));
+  }
+  header->bytes_per_voxel = static_cast<uint64_t>(vtkDataArray::GetDataTypeSize(header->vtk_type));
+  const std::string channels = text.value("elementnumberofchannels");
+  if (!channels.empty() && channels != "1") return bad_volume(file, absl::StrCat("has ", channels, " channels, not 1"));
+  if (text.has("binarydata") && !is_true(text.value("binarydata")))
+    return bad_volume(file, "keeps its voxels as text, which is not supported");
+  header->big_endian = is_true(value_of(text, {"binarydatabyteordermsb", "elementbyteordermsb"}));
+  header->compressed = is_true(text.value("compresseddata"));
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -65,13 +90,7 @@ absl::StatusOr<VolumeHeader> parse_metaimage_header(const std::filesystem::path&
   VolumeHeader header;
   header.format = VolumeFormat::kMetaImage;
   header.size = *sizes;
-  header.bytes_per_voxel = bytes_of_type(text->value("elementtype"));
-  if (header.bytes_per_voxel == 0)
-    return bad_volume(file,
-                      absl::StrCat("has ElementType \"", text->value("elementtype"), "\", which is not a scalar type"));
-  const std::string channels = text->value("elementnumberofchannels");
-  if (!channels.empty() && channels != "1") return bad_volume(file, absl::StrCat("has ", channels, " channels, not 1"));
-  header.compressed = is_true(text->value("compresseddata"));
+  if (auto status = set_voxels(file, *text, &header); !status.ok()) return status;
   const std::string data = text->value("elementdatafile");
   if (data.starts_with("LIST") || data.find('%') != std::string::npos)
     return bad_volume(file, "keeps its slices in files of their own; join them first");

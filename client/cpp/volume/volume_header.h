@@ -19,8 +19,8 @@ struct VolumeHeader {
   VolumeFormat format = VolumeFormat::kMetaImage;
   std::array<uint64_t, 3> size{};
   uint64_t bytes_per_voxel = 0;
-  int vtk_type = 0;         ///< of a voxel, VTK_SHORT and so on; of NRRD
-  bool big_endian = false;  ///< of NRRD
+  int vtk_type = 0;         ///< of a voxel, VTK_SHORT and so on; not of NIfTI
+  bool big_endian = false;  ///< the same
   bool compressed = false;
   std::filesystem::path data_file;  ///< may be the header's own file
   uint64_t data_offset = 0;

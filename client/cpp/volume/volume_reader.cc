@@ -3,7 +3,6 @@
 #include <vtkByteSwap.h>
 #include <vtkDataArray.h>
 #include <vtkMatrix4x4.h>
-#include <vtkMetaImageReader.h>
 #include <vtkNIFTIImageHeader.h>
 #include <vtkNIFTIImageReader.h>
 #include <vtkNew.h>
@@ -22,28 +21,10 @@
 namespace lipofill::client {
 namespace {
 
-absl::Status take_voxels(const std::filesystem::path& file, vtkImageReader2* reader, Volume* volume) {
-  const VtkMessages messages;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  if (!messages.error().empty()) return bad_volume(file, absl::StrCat("cannot be read: ", messages.error()));
-  vtkImageData* image = reader->GetOutput();
-  int size[3];
-  image->GetDimensions(size);
-  for (size_t i = 0; i < 3; ++i) {
-    if (static_cast<uint64_t>(size[i]) != volume->header.size[i])
-      return bad_volume(file, "has voxels of another size than its header");
-  }
-  if (image->GetNumberOfScalarComponents() != 1) return bad_volume(file, "has more than one value a voxel");
-  volume->voxels = vtkSmartPointer<vtkImageData>::New();
-  volume->voxels->SetDimensions(size);
-  volume->voxels->GetPointData()->SetScalars(image->GetPointData()->GetScalars());
-  return absl::OkStatus();
-}
-
-/// Without VTK's reader of NRRD, which has its own ideas of a header: on damaged ones it does not come to an end, or
-/// writes beyond its memory. Such volumes have one value a voxel, as many as the file has been found to hold.
-absl::Status take_nrrd_voxels(const std::filesystem::path& file, Volume* volume) {
+/// Of MetaImage and NRRD, one value a voxel, as many as the file has been found to hold. Without VTK's readers, which
+/// have their own ideas of a header: on damaged ones that of NRRD does not come to an end, or writes beyond its memory,
+/// and that of MetaImage loses some.
+absl::Status take_voxels(const std::filesystem::path& file, Volume* volume) {
   const VolumeHeader& header = volume->header;
   const uint64_t bytes = header.voxel_bytes();
   const auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(header.vtk_type));
@@ -71,6 +52,25 @@ absl::Status take_nrrd_voxels(const std::filesystem::path& file, Volume* volume)
   volume->voxels->SetDimensions(static_cast<int>(header.size[0]), static_cast<int>(header.size[1]),
                                 static_cast<int>(header.size[2]));
   volume->voxels->GetPointData()->SetScalars(values);
+  return absl::OkStatus();
+}
+
+absl::Status take_nifti_voxels(const std::filesystem::path& file, vtkNIFTIImageReader* reader, Volume* volume) {
+  const VtkMessages messages;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  if (!messages.error().empty()) return bad_volume(file, absl::StrCat("cannot be read: ", messages.error()));
+  vtkImageData* image = reader->GetOutput();
+  int size[3];
+  image->GetDimensions(size);
+  for (size_t i = 0; i < 3; ++i) {
+    if (static_cast<uint64_t>(size[i]) != volume->header.size[i])
+      return bad_volume(file, "has voxels of another size than its header");
+  }
+  if (image->GetNumberOfScalarComponents() != 1) return bad_volume(file, "has more than one value a voxel");
+  volume->voxels = vtkSmartPointer<vtkImageData>::New();
+  volume->voxels->SetDimensions(size);
+  volume->voxels->GetPointData()->SetScalars(image->GetPointData()->GetScalars());
   return absl::OkStatus();
 }
 
@@ -112,14 +112,12 @@ absl::StatusOr<Volume> read_volume(const std::filesystem::path& file) {
   volume.header = *header;
   volume.index_to_mm = header->index_to_mm;
   absl::Status status;
-  if (header->format == VolumeFormat::kMetaImage) {
-    status = take_voxels(file, vtkNew<vtkMetaImageReader>(), &volume);
-  } else if (header->format == VolumeFormat::kNrrd) {
-    status = take_nrrd_voxels(file, &volume);
-  } else {
+  if (header->format == VolumeFormat::kNifti) {
     vtkNew<vtkNIFTIImageReader> reader;
-    status = take_voxels(file, reader, &volume);
+    status = take_nifti_voxels(file, reader, &volume);
     if (status.ok()) take_nifti_geometry(reader, &volume);
+  } else {
+    status = take_voxels(file, &volume);
   }
   if (!status.ok()) return status;
   if (!(std::abs(determinant(volume.index_to_mm)) > 1e-9)) return bad_volume(file, "has axes that do not span space");

@@ -70,11 +70,12 @@ inline std::string nrrd(const BallVolume& ball, const std::string& space, const 
   return header + (encoding == "raw" ? ball.bytes() : gzipped(ball.bytes()));
 }
 
-/// The same volume of 16-bit voxels, the more significant byte first.
-inline std::string big_endian(std::string raw_nrrd) {
-  raw_nrrd.replace(raw_nrrd.find("little"), 6, "big");
-  for (size_t k = raw_nrrd.find("\n\n") + 2; k + 1 < raw_nrrd.size(); k += 2) std::swap(raw_nrrd[k], raw_nrrd[k + 1]);
-  return raw_nrrd;
+/// The 16-bit voxels at the end of a volume with the more significant byte first.
+inline std::string big_endian(std::string bytes, const BallVolume& ball, const std::string& little,
+                              const std::string& big) {
+  bytes.replace(bytes.find(little), little.size(), big);
+  for (size_t k = bytes.size() - ball.bytes().size(); k < bytes.size(); k += 2) std::swap(bytes[k], bytes[k + 1]);
+  return bytes;
 }
 
 /// A NIfTI-1 file whose sform maps voxels to RAS: x = i - 10, y = 1.25 j + 3, z = 1.5 k.

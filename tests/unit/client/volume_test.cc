@@ -75,6 +75,12 @@ class VolumeTest : public TemporaryFolderTest {
 TEST_F(VolumeTest, BallInMetaImage) {
   const BallVolume ball;
   expect_ball("a.mha", metaimage(ball), {20, 22, 24});
+  expect_ball("big.mha", big_endian(metaimage(ball), ball, "ByteOrderMSB = False", "ByteOrderMSB = True"),
+              {20, 22, 24});
+  std::string packed = metaimage(ball);
+  packed.replace(packed.size() - ball.bytes().size(), std::string::npos, gzipped(ball.bytes()));
+  packed.insert(packed.find("Offset"), "CompressedData = True\n");
+  expect_ball("packed.mha", packed, {20, 22, 24});
   // Row a of TransformMatrix is where index a points: here i to y, j to -x; offset added.
   expect_ball("turned.mha", metaimage(ball, "0 1 0 -1 0 0 0 0 1", "100 0 -50"), {100 - 22.0, 20, 24 - 50});
   // A left-handed grid: the triangles still face outwards.
@@ -85,7 +91,8 @@ TEST_F(VolumeTest, BallInNrrd) {
   const BallVolume ball;
   expect_ball("a.nrrd", nrrd(ball, "left-posterior-superior", "raw"), {25, 28, 31});
   expect_ball("gz.nrrd", nrrd(ball, "left-posterior-superior", "gzip"), {25, 28, 31});
-  expect_ball("big.nrrd", big_endian(nrrd(ball, "left-posterior-superior", "raw")), {25, 28, 31});
+  expect_ball("big.nrrd", big_endian(nrrd(ball, "left-posterior-superior", "raw"), ball, "little", "big"),
+              {25, 28, 31});
   expect_ball("ras.nrrd", nrrd(ball, "right-anterior-superior", "raw"), {-25, -28, 31});
 }
 
@@ -177,6 +184,11 @@ TEST_F(VolumeTest, RefusesGarbageAndHugeHeaders) {
       refusal_of("rgb.mha",
                  "DimSize = 2 2 2\nElementNumberOfChannels = 3\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n"),
       HasSubstr("3 channels"));
+  EXPECT_THAT(refusal_of("flat.mha", "NDims = 2\nDimSize = 2 2 2\nElementType = MET_CHAR\nElementDataFile = LOCAL\n"),
+              HasSubstr("has NDims 2, not 3"));
+  EXPECT_THAT(
+      refusal_of("text.mha", "BinaryData = False\nDimSize = 2 2 2\nElementType = MET_CHAR\nElementDataFile = LOCAL\n"),
+      HasSubstr("voxels as text"));
   refusal_of("a.dcm", "DICM");
 }
 

@@ -132,9 +132,14 @@ TEST_F(FaultTest, AResultThatFoundNoRoomIsKeptLater) {
 }
 
 TEST_F(FaultTest, ADamagedCheckpointIsPassedOverAndTold) {
-  create(3.0, "unbroken");
+  constexpr double kEndS = 6.0;
+  create(kEndS, "unbroken");
   const std::string hash = await_end("simulations/unbroken").summary().state_hash();
-  create(3.0, "x");
+  // In real time, or it might end before a slow machine has looked at it.
+  v1::SimulationSpec plan = square_plan(model_.name(), kEndS);
+  plan.set_pace(v1::REAL_TIME);
+  v1::Simulation paced;
+  ASSERT_TRUE(create_simulation(plan, "x", true, paced).ok());
   await_step("simulations/x", 40);
   checkpoint("simulations/x", "older");
   await_step("simulations/x", 80);
@@ -153,7 +158,7 @@ TEST_F(FaultTest, ADamagedCheckpointIsPassedOverAndTold) {
   EXPECT_EQ(call(*simulations_, &Simulations::RestoreSimulation, request, none).error_code(),
             grpc::StatusCode::DATA_LOSS);
   EXPECT_EQ(await_end("simulations/x").summary().state_hash(), hash);
-  EXPECT_EQ(series("simulations/x").rows_size(), 300);
+  EXPECT_EQ(series("simulations/x").rows_size(), 600);
 }
 
 TEST_F(FaultTest, WithoutAnyCheckpointItBeginsAgain) {

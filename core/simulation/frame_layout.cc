@@ -20,14 +20,14 @@ SkinPoint place_on_skin(const geometry::LayeredGrid& grid, const geometry::Chart
   return point;
 }
 
-std::vector<int> order_outermost_first(const std::vector<FilmLayout>& films) {
+std::vector<int> order_outermost_first(const std::vector<plan::FilmLayout>& films) {
   std::vector<int> order(films.size());
   for (size_t f = 0; f < films.size(); ++f) order[f] = static_cast<int>(f);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return films[a].level < films[b].level; });
   return order;
 }
 
-void find_cell_below(const std::vector<FilmLayout>& films, const std::vector<int>& outermost_first,
+void find_cell_below(const std::vector<plan::FilmLayout>& films, const std::vector<int>& outermost_first,
                      const geometry::ChartPoint& place, SkinPoint& point) {
   for (const int f : outermost_first) {
     const int cell = films[f].cell_at(place);
@@ -63,7 +63,7 @@ void add_film(const film::FilmGrid& grid, FrameLayout& layout) {
 
 }  // namespace
 
-FrameLayout make_frame_layout(const geometry::LayeredGrid& skin, const std::vector<FilmLayout>& films,
+FrameLayout make_frame_layout(const geometry::LayeredGrid& skin, const std::vector<plan::FilmLayout>& films,
                               const geometry::FaceGeometry& face) {
   FrameLayout layout;
   const std::vector<int> outermost_first = order_outermost_first(films);
@@ -81,7 +81,7 @@ FrameLayout make_frame_layout(const geometry::LayeredGrid& skin, const std::vect
     }
   }
   for (const geometry::Rider& rider : face.riders) layout.scan.push_back(make_point(rider.vertex, rider.place));
-  for (const FilmLayout& film : films) add_film(film.grid, layout);
+  for (const plan::FilmLayout& film : films) add_film(film.grid, layout);
   return layout;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/geometry/face_geometry.h"
-#include "core/simulation/film_layout.h"
+#include "core/plan/film_layout.h"
 
 namespace lipofill::simulation {
 
@@ -28,7 +28,7 @@ struct FrameLayout {
 
 /// @param skin  of the simulation whose films these are
 /// @param face  whose skin and scan the frame shows: that model's own or another one's of the same chart
-FrameLayout make_frame_layout(const geometry::LayeredGrid& skin, const std::vector<FilmLayout>& films,
+FrameLayout make_frame_layout(const geometry::LayeredGrid& skin, const std::vector<plan::FilmLayout>& films,
                               const geometry::FaceGeometry& face);
 
 }  // namespace lipofill::simulation

@@ -82,7 +82,7 @@ Simulation::Impl::FilmsNow Simulation::Impl::measure_films() const {
     now.thickness.emplace_back(state.films[f].volume.cwiseQuotient(now.metric[f].area));
   }
   int zones_before = 0;
-  for (const FilmLayout& film : films) {
+  for (const plan::FilmLayout& film : films) {
     const std::vector<int>& of_cell = film.grid.zone_of_cell;
     Eigen::VectorXd& zone = now.zone.emplace_back(static_cast<Eigen::Index>(of_cell.size()));
     for (Eigen::Index cell = 0; cell < zone.size(); ++cell) {
@@ -163,7 +163,7 @@ void Simulation::Impl::add_scan_fields(const FrameLayout& layout, int n, const E
 
 void Simulation::Impl::add_film_fields(size_t f, const FilmsNow& now, std::vector<FrameField>& fields) const {
   const std::string name = "film/" + films[f].name;
-  const FilmState& film = state.films[f];
+  const mechanics::FilmState& film = state.films[f];
   const film::FilmMetric& metric = now.metric[f];
   fields.push_back({name, "displacement", "mm", FieldLocation::kPoint, 3,
                     select_moved(rest_film_vertices[f], metric.vertices, frame_layout.film_vertices[f])});

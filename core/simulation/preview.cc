@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/simulation/coarse_plan.h"
+#include "core/plan/coarse_plan.h"
 
 namespace lipofill::simulation {
 namespace {
@@ -22,13 +22,13 @@ std::vector<float> find_skin_displacement(const std::vector<FrameField>& fields)
 
 }  // namespace
 
-Preview::Preview(std::shared_ptr<const FaceModel> model, std::unique_ptr<Simulation> coarse)
+Preview::Preview(std::shared_ptr<const model::FaceModel> model, std::unique_ptr<Simulation> coarse)
     : model_(std::move(model)), coarse_(std::move(coarse)) {}
 
-absl::StatusOr<std::unique_ptr<Preview>> Preview::create(std::shared_ptr<const FaceModel> model,
-                                                         const SimulationSpec& spec) {
-  const std::shared_ptr<const FaceModel> coarse_model = coarsen_model(*model);
-  auto coarse = Simulation::create(coarse_model, coarsen_plan(spec, *model, *coarse_model));
+absl::StatusOr<std::unique_ptr<Preview>> Preview::create(std::shared_ptr<const model::FaceModel> model,
+                                                         const plan::SimulationSpec& spec) {
+  const std::shared_ptr<const model::FaceModel> coarse_model = plan::coarsen_model(*model);
+  auto coarse = Simulation::create(coarse_model, plan::coarsen_plan(spec, *model, *coarse_model));
   if (!coarse.ok()) return coarse.status();
   return std::unique_ptr<Preview>(new Preview(std::move(model), *std::move(coarse)));
 }

@@ -24,8 +24,8 @@ struct PreviewDifference {
 class Preview {
  public:
   /// Field violations where the coarse grid cannot hold the plan, for example a zone that none of its cells is in.
-  static absl::StatusOr<std::unique_ptr<Preview>> create(std::shared_ptr<const FaceModel> model,
-                                                         const SimulationSpec& spec);
+  static absl::StatusOr<std::unique_ptr<Preview>> create(std::shared_ptr<const model::FaceModel> model,
+                                                         const plan::SimulationSpec& spec);
 
   /// One step, as Simulation::advance_step. Fails when kMostSteps have not settled it.
   void advance_step();
@@ -42,9 +42,9 @@ class Preview {
   std::vector<FrameField> frame() const;
 
  private:
-  Preview(std::shared_ptr<const FaceModel> model, std::unique_ptr<Simulation> coarse);
+  Preview(std::shared_ptr<const model::FaceModel> model, std::unique_ptr<Simulation> coarse);
 
-  std::shared_ptr<const FaceModel> model_;
+  std::shared_ptr<const model::FaceModel> model_;
   std::unique_ptr<Simulation> coarse_;
   Phase phase_ = Phase::kRunning;
   std::string reason_;

@@ -8,9 +8,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
-#include "core/simulation/plan_checks.h"
+#include "core/plan/plan_checks.h"
+#include "core/plan/step_rules.h"
 #include "core/simulation/simulation_impl.h"
-#include "core/simulation/step_rules.h"
 
 namespace lipofill::simulation {
 namespace {
@@ -29,8 +29,8 @@ bool is_round_off_from(double time, double mark) {
 Simulation::Simulation() : impl_(std::make_unique<Impl>()) {}
 Simulation::~Simulation() = default;
 
-absl::StatusOr<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<const FaceModel> model,
-                                                               SimulationSpec spec) {
+absl::StatusOr<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<const model::FaceModel> model,
+                                                               plan::SimulationSpec spec) {
   std::unique_ptr<Simulation> simulation(new Simulation());
   simulation->impl_->model = std::move(model);
   simulation->impl_->spec = std::move(spec);
@@ -40,10 +40,10 @@ absl::StatusOr<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<c
 }
 
 absl::Status Simulation::Impl::set_up() {
-  if (const absl::Status status = check_plan(spec); !status.ok()) return status;
+  if (const absl::Status status = plan::check_plan(spec); !status.ok()) return status;
   FieldViolations violations;
   for (size_t f = 0; f < spec.films.size(); ++f) {
-    auto film = place_film(*model, spec.films[f]);
+    auto film = plan::place_film(*model, spec.films[f]);
     violations.absorb(absl::StrCat("films[", f, "]"), film.status());
     if (film.ok()) films.push_back(*std::move(film));
   }
@@ -54,7 +54,7 @@ absl::Status Simulation::Impl::set_up() {
   violations.absorb("", place_probes());
   if (!violations.empty()) return violations.to_status();
 
-  auto created = CoupledStep::create(*model, films, spec);
+  auto created = step::CoupledStep::create(*model, films, spec);
   if (!created.ok()) return created.status();
   stepper = *std::move(created);
   state = stepper->rest_state();
@@ -64,7 +64,7 @@ absl::Status Simulation::Impl::set_up() {
   }
   if (const absl::Status status = stepper->open_to_initial_thickness(state); !status.ok()) return status;
   state.next_step = spec.step;
-  for (const FilmState& film : state.films) initial_volume += film.volume.sum();
+  for (const mechanics::FilmState& film : state.films) initial_volume += film.volume.sum();
 
   fill_report(stepper->describe(state), 0.0);
   return absl::OkStatus();
@@ -73,10 +73,10 @@ absl::Status Simulation::Impl::set_up() {
 absl::Status Simulation::Impl::place_probes() {
   FieldViolations violations;
   for (size_t k = 0; k < spec.probes.size(); ++k) {
-    const ProbeSpec& probe = spec.probes[k];
+    const plan::ProbeSpec& probe = spec.probes[k];
     const std::string field = absl::StrCat("probes[", k, "]");
     const auto film =
-        std::find_if(films.begin(), films.end(), [&](const FilmLayout& f) { return f.name == probe.film; });
+        std::find_if(films.begin(), films.end(), [&](const plan::FilmLayout& f) { return f.name == probe.film; });
     const int index = probe.film.empty() ? 0 : static_cast<int>(film - films.begin());
     if (index == static_cast<int>(films.size())) {
       violations.add(field + ".film", absl::StrCat("is '", probe.film, "', which is no film of the plan"));
@@ -99,7 +99,7 @@ void Simulation::advance_step() {
   if (impl.phase != Phase::kRunning) return;
   double total_time = 0.0;
   {
-    const PhaseTimer timer(total_time);
+    const step::PhaseTimer timer(total_time);
     impl.advance();
   }
   impl.report.cost = impl.stepper->cost();
@@ -123,7 +123,8 @@ void Simulation::Impl::try_with_smaller_steps() {
   const double smallest = spec.step * kSmallestStepShare;
   uint64_t rejected = state.rejected_steps;
   for (double dt = first_step_to_try(smallest); dt >= smallest;) {
-    schedule.deliver(films, state.films, state.time, dt, injected);
+    const auto held = [this](int film, int cell) { return state.films[film].volume[cell]; };
+    schedule.deliver(films, held, state.time, dt, injected);
     stepper->try_step(state, injected, dt, attempt);
     attempt.state.rejected_steps = rejected;
     if (attempt.accepted) {
@@ -155,7 +156,7 @@ double Simulation::Impl::next_mark() const {
 
 /// Local error of implicit Euler, dt^2 x''/2, from how far the step leaves the line of the last one: the largest over
 /// the positions of the tissue and the thickness of the films [m].
-double Simulation::Impl::estimate_error(const SimulationState& next, double dt) const {
+double Simulation::Impl::estimate_error(const mechanics::SimulationState& next, double dt) const {
   double deviation = 0.0;
   if (state.positions.size() > 0) {
     deviation = (next.positions - state.positions - dt * state.velocities).colwise().norm().maxCoeff();
@@ -192,10 +193,10 @@ double Simulation::Impl::estimate_settling_error(double last_speed, double dt) c
   return report.skin_speed * dt / std::log(last_speed / report.skin_speed);
 }
 
-void Simulation::Impl::choose_next_step(const StepOutcome& outcome, double dt) {
+void Simulation::Impl::choose_next_step(const step::StepOutcome& outcome, double dt) {
   const bool injecting = state.time < schedule.end();
   const double largest = (injecting ? spec.max_injection_step : spec.max_step).value_or(spec.step);
-  const StepRules rules = rules_of(spec.goal);
+  const plan::StepRules rules = plan::rules_of(spec.goal);
   const bool easy = outcome.film_iterations <= rules.easy_film_iterations &&
                     outcome.newton_iterations <= rules.easy_newton_iterations;
   const double growth = easy ? std::min(rules.growth * dt, std::max(dt, allowed_step(dt, outcome.error))) : dt;
@@ -207,7 +208,7 @@ void Simulation::Impl::decide_phase() {
       spec.settle_skin_speed > 0.0 && report.skin_speed < spec.settle_skin_speed && state.time >= schedule.end();
   state.slow_steps = slow ? state.slow_steps + 1 : 0;
   const bool falls = std::isfinite(report.settling_error);
-  if (state.slow_steps >= rules_of(falls ? spec.goal : TimeGoal::kTransient).settled_steps) {
+  if (state.slow_steps >= plan::rules_of(falls ? spec.goal : plan::TimeGoal::kTransient).settled_steps) {
     phase = Phase::kSettled;
     reason = absl::StrCat("the skin moves slower than ", spec.settle_skin_speed * 1e3, " mm/s");
   } else if (state.time >= spec.end * (1.0 - 1e-12)) {
@@ -230,30 +231,30 @@ const std::string& Simulation::reason() const {
 const StepReport& Simulation::report() const {
   return impl_->report;
 }
-const SimulationSpec& Simulation::spec() const {
+const plan::SimulationSpec& Simulation::spec() const {
   return impl_->spec;
 }
-const FaceModel& Simulation::model() const {
+const model::FaceModel& Simulation::model() const {
   return *impl_->model;
 }
-const std::shared_ptr<const FaceModel>& Simulation::shared_model() const {
+const std::shared_ptr<const model::FaceModel>& Simulation::shared_model() const {
   return impl_->model;
 }
 
-absl::StatusOr<InjectionSpec> Simulation::resolve(const InjectionSpec& injection) const {
+absl::StatusOr<plan::InjectionSpec> Simulation::resolve(const plan::InjectionSpec& injection) const {
   if (impl_->phase != Phase::kRunning) {
     return absl::FailedPreconditionError("the simulation has ended and takes no more injections");
   }
-  if (const absl::Status room = check_room_for_injection(impl_->spec); !room.ok()) return room;
-  InjectionSpec timed = injection;
+  if (const absl::Status room = plan::check_room_for_injection(impl_->spec); !room.ok()) return room;
+  plan::InjectionSpec timed = injection;
   if (!timed.start.has_value()) timed.start = std::max(impl_->state.time, impl_->schedule.end());
-  InjectionSchedule trial = impl_->schedule;
+  plan::InjectionSchedule trial = impl_->schedule;
   const absl::Status status = trial.add(*impl_->model, impl_->films, timed, impl_->state.time);
   if (!status.ok()) return status;
   return timed;
 }
 
-absl::Status Simulation::inject(const InjectionSpec& injection) {
+absl::Status Simulation::inject(const plan::InjectionSpec& injection) {
   const auto timed = resolve(injection);
   if (!timed.ok()) return timed.status();
   const absl::Status status = impl_->schedule.add(*impl_->model, impl_->films, *timed, impl_->state.time);
@@ -276,7 +277,7 @@ int Simulation::n_dofs() const {
 
 int Simulation::n_film_cells() const {
   int n = 0;
-  for (const FilmLayout& film : impl_->films) n += film.grid.n_cells();
+  for (const plan::FilmLayout& film : impl_->films) n += film.grid.n_cells();
   return n;
 }
 

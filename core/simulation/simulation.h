@@ -10,9 +10,9 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "core/simulation/face_model.h"
-#include "core/simulation/simulation_spec.h"
-#include "core/simulation/step_cost.h"
+#include "core/model/face_model.h"
+#include "core/plan/simulation_spec.h"
+#include "core/step/step_cost.h"
 
 namespace lipofill::simulation {
 
@@ -67,7 +67,7 @@ struct StepReport {
   double ligament_tension = 0.0;  ///< sum over all ligaments [N]
   int broken_ligament_points = 0;
   int closed_cells = 0;                 ///< cells that fat has not entered
-  StepCost cost;                        ///< of the step, tries that were taken back included
+  step::StepCost cost;                  ///< of the step, tries that were taken back included
   std::vector<double> probe_thickness;  ///< [m]
   std::vector<double> probe_pressure;   ///< [Pa]
 };
@@ -100,8 +100,8 @@ struct FrameField {
 class Simulation {
  public:
   /// INVALID_ARGUMENT with field violations named as in lipofill.v1.SimulationSpec, values in the units of those names.
-  static absl::StatusOr<std::unique_ptr<Simulation>> create(std::shared_ptr<const FaceModel> model,
-                                                            SimulationSpec spec);
+  static absl::StatusOr<std::unique_ptr<Simulation>> create(std::shared_ptr<const model::FaceModel> model,
+                                                            plan::SimulationSpec spec);
   ~Simulation();
 
   /// One time step. Never throws. On failure phase() is kFailed with reason(), and the state stays that before the
@@ -116,13 +116,13 @@ class Simulation {
 
   /// Adds an injection to the plan; without a start it begins now, or after the last one still due. Field violations
   /// named as in lipofill.v1.Injection. A settled or finished simulation does not take one: FAILED_PRECONDITION.
-  absl::Status inject(const InjectionSpec& injection);
+  absl::Status inject(const plan::InjectionSpec& injection);
   /// The injection that inject() would add, with its start, or why it would refuse it. Whoever must note an injection
   /// before it takes effect notes this one: inject() of it, at the same step of an equal simulation, does the same.
-  absl::StatusOr<InjectionSpec> resolve(const InjectionSpec& injection) const;
-  const SimulationSpec& spec() const;
-  const FaceModel& model() const;
-  const std::shared_ptr<const FaceModel>& shared_model() const;
+  absl::StatusOr<plan::InjectionSpec> resolve(const plan::InjectionSpec& injection) const;
+  const plan::SimulationSpec& spec() const;
+  const model::FaceModel& model() const;
+  const std::shared_ptr<const model::FaceModel>& shared_model() const;
 
   int n_hexahedra() const;
   int n_film_cells() const;

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "core/simulation/coupled_step.h"
-#include "core/simulation/film_layout.h"
+#include "core/mechanics/simulation_state.h"
+#include "core/plan/film_layout.h"
+#include "core/plan/injection_schedule.h"
 #include "core/simulation/frame_layout.h"
-#include "core/simulation/injection_schedule.h"
 #include "core/simulation/simulation.h"
-#include "core/simulation/simulation_state.h"
+#include "core/step/coupled_step.h"
 
 namespace lipofill::simulation {
 
@@ -21,43 +21,43 @@ struct ProbePlace {
 
 /// What Simulation holds; its members are spread over simulation.cc (steps), step_report.cc, frames.cc and snapshot.cc.
 struct Simulation::Impl {
-  std::shared_ptr<const FaceModel> model;
-  SimulationSpec spec;
-  std::vector<FilmLayout> films;
+  std::shared_ptr<const model::FaceModel> model;
+  plan::SimulationSpec spec;
+  std::vector<plan::FilmLayout> films;
   FrameLayout frame_layout;
   std::vector<Eigen::Matrix3Xd> rest_film_vertices;  ///< of each film's mid-surface [m] (3, n_vertices)
   std::vector<ProbePlace> probes;
-  InjectionSchedule schedule;
-  std::unique_ptr<CoupledStep> stepper;
-  SimulationState state;
+  plan::InjectionSchedule schedule;
+  std::unique_ptr<step::CoupledStep> stepper;
+  mechanics::SimulationState state;
   Phase phase = Phase::kRunning;
   std::string reason;
   StepReport report;
   std::vector<LigamentReport> ligaments;
   double initial_volume = 0.0;
   // What a step writes into again and again.
-  StepOutcome attempt;                    ///< what came of the last try
+  step::StepOutcome attempt;              ///< what came of the last try
   std::vector<Eigen::VectorXd> injected;  ///< a film [m3] (n_cells)
   std::vector<double> delivered_before;   ///< an injection [m3]
   Eigen::Matrix3Xd moved_skin;            ///< [m] (3, nodes_per_level)
 
   absl::Status set_up();
   absl::Status place_probes();
-  absl::Status add_injection(const InjectionSpec& injection, double now);
+  absl::Status add_injection(const plan::InjectionSpec& injection, double now);
   void advance();
   void try_with_smaller_steps();
   double first_step_to_try(double smallest) const;
   double next_mark() const;
   void accept(double dt);
-  double estimate_error(const SimulationState& next, double dt) const;
+  double estimate_error(const mechanics::SimulationState& next, double dt) const;
   double allowed_step(double dt, double error) const;
   double estimate_settling_error(double last_speed, double dt) const;
-  void choose_next_step(const StepOutcome& outcome, double dt);
+  void choose_next_step(const step::StepOutcome& outcome, double dt);
   void fail(std::string why);
   void decide_phase();
 
-  void fill_report(const StepOutcome& outcome, double dt);
-  void report_ligaments(const StepOutcome& outcome);
+  void fill_report(const step::StepOutcome& outcome, double dt);
+  void report_ligaments(const step::StepOutcome& outcome);
   Eigen::Matrix3Xd skin_positions() const;
   Eigen::Matrix3Xd skin_displacement() const;
 

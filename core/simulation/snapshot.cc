@@ -13,7 +13,7 @@ constexpr char kMagic[] = "lipofill-state-6";
 
 /// Visits every number of the mutable state in a fixed order, so that writing, reading and hashing cannot disagree.
 template <typename Visitor>
-void visit_state(SimulationState& state, Visitor& visit) {
+void visit_state(mechanics::SimulationState& state, Visitor& visit) {
   visit.number(state.step);
   visit.number(state.time);
   visit.number(state.last_step);
@@ -34,7 +34,7 @@ void visit_state(SimulationState& state, Visitor& visit) {
   visit.number(state.late_pressure_iterations);
   visit.array(state.factored_positions.data(), state.factored_positions.size());
   visit.array(state.factored_springs.data(), state.factored_springs.size());
-  for (FilmState& film : state.films) {
+  for (mechanics::FilmState& film : state.films) {
     for (Eigen::VectorXd* values : {&film.volume, &film.pressure, &film.velocity, &film.volume_rate,
                                     &film.pressure_rate, &film.earlier_volume_rate, &film.earlier_pressure_rate,
                                     &film.wall_stress, &film.factored_mobility, &film.is_entered}) {
@@ -79,7 +79,7 @@ struct Reader {
 };
 
 /// What no simulation ever is, whatever its numbers.
-bool is_possible(const SimulationState& state, int phase) {
+bool is_possible(const mechanics::SimulationState& state, int phase) {
   const bool is_phase = phase >= static_cast<int>(Phase::kRunning) && phase <= static_cast<int>(Phase::kFailed);
   const bool is_counted = state.slow_steps >= 0 && state.equal_steps >= 0 && state.late_iterations >= 0 &&
                           state.late_pressure_iterations >= 0 &&
@@ -104,7 +104,7 @@ struct HashVisitor {
 
 std::string Simulation::state_hash() const {
   HashVisitor visitor;
-  SimulationState state = impl_->state;
+  mechanics::SimulationState state = impl_->state;
   visit_state(state, visitor);
   return visitor.hasher.hex_digest();
 }
@@ -112,7 +112,7 @@ std::string Simulation::state_hash() const {
 std::string Simulation::snapshot() const {
   Writer writer;
   writer.bytes = kMagic;
-  SimulationState state = impl_->state;
+  mechanics::SimulationState state = impl_->state;
   visit_state(state, writer);
   int phase = static_cast<int>(impl_->phase);
   writer.number(phase);
@@ -129,7 +129,7 @@ absl::Status Simulation::restore(std::string_view snapshot) {
   Impl& impl = *impl_;
   const size_t magic_size = sizeof kMagic - 1;
   Reader reader{snapshot.substr(std::min(magic_size, snapshot.size()))};
-  SimulationState state = impl.state;
+  mechanics::SimulationState state = impl.state;
   double total = 0.0, initial = 0.0;
   int phase = 0;
   std::vector<double> delivered = impl.schedule.delivered_each();

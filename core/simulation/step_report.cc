@@ -19,7 +19,7 @@ struct FilmFigures {
   double max_thickness = 0.0;
 
   /// The pressure of a cell that fat has not entered is the pull of the tissue that holds it shut: it does not count.
-  void add(const FilmState& film, int cell, double cell_area) {
+  void add(const mechanics::FilmState& film, int cell, double cell_area) {
     const double cell_volume = film.volume[cell];
     if (film.is_entered.size() == 0 || film.is_entered[cell] > 0.0) {
       max_pressure = std::max(max_pressure, film.pressure[cell]);
@@ -49,14 +49,14 @@ Eigen::Matrix3Xd Simulation::Impl::skin_displacement() const {
 }
 
 /// Fills the report from an outcome that becomes the state.
-void Simulation::Impl::fill_report(const StepOutcome& outcome, double dt) {
-  const SimulationState& next = outcome.state;
+void Simulation::Impl::fill_report(const step::StepOutcome& outcome, double dt) {
+  const mechanics::SimulationState& next = outcome.state;
   FilmFigures figures;
   report.probe_thickness.assign(probes.size(), 0.0);
   report.probe_pressure.assign(probes.size(), 0.0);
   for (size_t f = 0; f < films.size(); ++f) {
     const Eigen::VectorXd& area = stepper->measure_area(next, static_cast<int>(f));
-    const FilmState& film = next.films[f];
+    const mechanics::FilmState& film = next.films[f];
     for (int cell = 0; cell < films[f].grid.n_cells(); ++cell) figures.add(film, cell, area[cell]);
     for (size_t k = 0; k < probes.size(); ++k) {
       if (probes[k].film != static_cast<int>(f)) continue;
@@ -75,7 +75,7 @@ void Simulation::Impl::fill_report(const StepOutcome& outcome, double dt) {
   report.film_volume_relative_error = std::abs(figures.volume - initial_volume - report.injected) / scale;
   double mismatch = 0.0;
   Eigen::Index offset = 0;
-  for (const FilmState& film : next.films) {
+  for (const mechanics::FilmState& film : next.films) {
     const auto held = outcome.void_volume.segment(offset, film.volume.size());
     mismatch += (outcome.gap.segment(offset, film.volume.size()) - film.volume - held).cwiseAbs().sum();
     offset += film.volume.size();
@@ -96,7 +96,7 @@ void Simulation::Impl::fill_report(const StepOutcome& outcome, double dt) {
   report.ligament_tension = outcome.spring_tension.sum();
   report.broken_ligament_points = static_cast<int>((next.spring_is_intact.array() == 0.0).count());
   report.closed_cells = 0;
-  for (const FilmState& film : next.films) {
+  for (const mechanics::FilmState& film : next.films) {
     report.closed_cells += static_cast<int>((film.is_entered.array() == 0.0).count());
   }
   report_ligaments(outcome);
@@ -117,10 +117,10 @@ void Simulation::Impl::fill_report(const StepOutcome& outcome, double dt) {
   report.skin_volume_change = coupling::compute_swept_volume(grid, grid.nodes, moved_skin);
 }
 
-void Simulation::Impl::report_ligaments(const StepOutcome& outcome) {
+void Simulation::Impl::report_ligaments(const step::StepOutcome& outcome) {
   ligaments.clear();
   if (stepper->tissue() == nullptr) return;
-  for (const LigamentLayout& layout : stepper->tissue()->ligaments) {
+  for (const mechanics::LigamentLayout& layout : stepper->tissue()->ligaments) {
     LigamentReport ligament{layout.name, 0.0, 0.0, layout.n_springs, 0};
     for (int k = layout.first_spring; k < layout.first_spring + layout.n_springs; ++k) {
       ligament.tension += outcome.spring_tension[k];
@@ -139,7 +139,7 @@ std::vector<ZoneReport> Simulation::zone_reports() const {
   std::vector<ZoneReport> reports;
   const Impl& impl = *impl_;
   for (size_t f = 0; f < impl.films.size(); ++f) {
-    const FilmLayout& layout = impl.films[f];
+    const plan::FilmLayout& layout = impl.films[f];
     const Eigen::VectorXd area = impl.stepper->film_metric(impl.state, static_cast<int>(f)).area;
     std::vector<FilmFigures> zones(layout.zone_names.size());
     for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "core/simulation/face_model.h"
+#include "core/model/face_model.h"
 
 namespace lipofill::server {
 
@@ -15,7 +15,7 @@ namespace lipofill::server {
 /// Checked by tests/unit/server/model_cache_test.cc.
 class ModelCache {
  public:
-  using Model = std::shared_ptr<const simulation::FaceModel>;
+  using Model = std::shared_ptr<const model::FaceModel>;
   using Build = std::function<absl::StatusOr<Model>()>;
 
   explicit ModelCache(size_t capacity) : capacity_(capacity) {}

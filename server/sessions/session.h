@@ -30,7 +30,7 @@ struct SessionOptions {
 
 /// An injection as the core takes it and as the sink keeps it.
 struct InjectionOrder {
-  simulation::InjectionSpec spec;
+  plan::InjectionSpec spec;
   std::string message;
   std::function<absl::Status()> check = nullptr;  ///< may refuse it; no command comes between it and the injection
 };
@@ -49,7 +49,7 @@ struct SessionHistory {
   double wall_s = 0.0;  ///< spent RUNNING
   struct Injection {
     uint64_t step = 0;
-    simulation::InjectionSpec spec;
+    plan::InjectionSpec spec;
   };
   std::deque<Injection> injections;
   uint64_t until_step = 0;  ///< where the last command took effect
@@ -89,7 +89,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   void stop(std::string reason, RequestKey request, Reply reply);
   void inject(InjectionOrder order, RequestKey request, Reply reply);
   /// What inject() would add, or why it would not.
-  using InjectionReply = std::function<void(absl::StatusOr<simulation::InjectionSpec>)>;
+  using InjectionReply = std::function<void(absl::StatusOr<plan::InjectionSpec>)>;
   void foresee(InjectionOrder order, InjectionReply reply);
   void restore(RestoreOrder order, RequestKey request, Reply reply);
   /// The figures as they are now, with the state hash.
@@ -145,7 +145,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   void answer(const Reply& reply, const std::function<absl::Status()>& act);
   void command(const char* what, std::vector<SimulationState> allowed, const RequestKey& request, const Reply& reply,
                const std::function<absl::Status()>& act);
-  absl::StatusOr<simulation::InjectionSpec> resolve(const InjectionOrder& order) const;
+  absl::StatusOr<plan::InjectionSpec> resolve(const InjectionOrder& order) const;
   absl::Status check_allowed(const char* what, const std::vector<SimulationState>& allowed) const;
   absl::Status keep_and_do(CommandKind kind, const std::string& payload, const RequestKey& request,
                            const std::function<void()>& act);
@@ -220,7 +220,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   Clock::time_point checkpoint_due_;
   std::optional<uint64_t> saved_step_;  ///< step of the last checkpoint
   std::vector<float> step_ms_;
-  simulation::CostSum cost_;
+  step::CostSum cost_;
   bool clock_runs_ = false;
   Clock::time_point running_since_;
   double running_since_time_s_ = 0.0;  ///< simulated

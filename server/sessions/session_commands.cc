@@ -129,7 +129,7 @@ void Session::inject(InjectionOrder order, RequestKey request, Reply reply) {
   });
 }
 
-absl::StatusOr<simulation::InjectionSpec> Session::resolve(const InjectionOrder& order) const {
+absl::StatusOr<plan::InjectionSpec> Session::resolve(const InjectionOrder& order) const {
   if (order.check != nullptr) {
     if (absl::Status fits = order.check(); !fits.ok()) return fits;
   }
@@ -138,7 +138,7 @@ absl::StatusOr<simulation::InjectionSpec> Session::resolve(const InjectionOrder&
 
 void Session::foresee(InjectionOrder order, InjectionReply reply) {
   post([this, order, reply] {
-    const auto foreseen = std::make_shared<absl::StatusOr<simulation::InjectionSpec>>(absl::UnknownError(""));
+    const auto foreseen = std::make_shared<absl::StatusOr<plan::InjectionSpec>>(absl::UnknownError(""));
     const auto pass_on = [foreseen, reply](const absl::StatusOr<SessionView>& view) {
       reply(view.ok() ? std::move(*foreseen) : view.status());
     };

@@ -7,8 +7,8 @@
 #include "absl/strings/str_cat.h"
 #include "client/cpp/plan_file.h"
 #include "core/geometry/surface_reader.h"
-#include "server/rpc/model_conversion.h"
-#include "server/rpc/simulation_conversion.h"
+#include "server/wire/model_conversion.h"
+#include "server/wire/simulation_conversion.h"
 
 namespace lipofill::bench {
 namespace {
@@ -38,7 +38,7 @@ void aim_at_settled_shape(v1::TimeControl& time) {
   time.clear_error_tolerance_mm();
 }
 
-absl::Status refine(int scale, simulation::FaceModelSpec& model, simulation::FilmSpec& film) {
+absl::Status refine(int scale, model::FaceModelSpec& model, plan::FilmSpec& film) {
   if (scale == kTinyScale) {
     model.n_xi /= 2;
     model.n_eta = 2 * (model.n_eta / 4) + 1;
@@ -78,7 +78,7 @@ absl::StatusOr<SampleFace> load_sample_face(int scale) {
 absl::StatusOr<JawAngle> make_jaw_angle(int scale) {
   auto face = load_sample_face(scale);
   if (!face.ok()) return face.status();
-  auto model = simulation::build_face_model(face->model, nullptr);
+  auto model = model::build_face_model(face->model, nullptr);
   if (!model.ok()) return model.status();
   return JawAngle{scale, *std::move(model), std::move(face->simulation), std::move(face->settled_shape)};
 }

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "absl/status/statusor.h"
-#include "core/simulation/face_model.h"
-#include "core/simulation/simulation_spec.h"
+#include "core/model/face_model.h"
+#include "core/plan/simulation_spec.h"
 
 namespace lipofill::bench {
 
@@ -13,9 +13,9 @@ inline constexpr double kTinyShare = 0.25;
 
 /// The sample plan jaw_angle, which is of the paper's size, and the face shipped with it: what there is to build from.
 struct SampleFace {
-  simulation::FaceModelSpec model;
-  simulation::SimulationSpec simulation;
-  simulation::SimulationSpec settled_shape;  ///< the same with that goal: few long steps
+  model::FaceModelSpec model;
+  plan::SimulationSpec simulation;
+  plan::SimulationSpec settled_shape;  ///< the same with that goal: few long steps
 };
 
 /// From client/examples/plans/jaw_angle.json, refined in the plane of the face: `scale` 1, 4, 16 or 64 has as many
@@ -26,9 +26,9 @@ absl::StatusOr<SampleFace> load_sample_face(int scale);
 /// The same, built.
 struct JawAngle {
   int scale = 1;
-  std::shared_ptr<const simulation::FaceModel> model;
-  simulation::SimulationSpec spec;
-  simulation::SimulationSpec settled_shape;
+  std::shared_ptr<const model::FaceModel> model;
+  plan::SimulationSpec spec;
+  plan::SimulationSpec settled_shape;
 };
 absl::StatusOr<JawAngle> make_jaw_angle(int scale);
 

@@ -17,7 +17,7 @@ Eigen::VectorXd field_values(const std::vector<simulation::FrameField>& fields, 
                     .cast<double>();
 }
 
-film::Fat make_fat(const simulation::SimulationSpec& spec) {
+film::Fat make_fat(const plan::SimulationSpec& spec) {
   film::Fat fat;
   fat.viscosity = spec.fat_viscosity;
   fat.density = spec.fat_density;
@@ -28,12 +28,12 @@ film::Fat make_fat(const simulation::SimulationSpec& spec) {
 
 absl::StatusOr<std::unique_ptr<StepParts>> StepParts::create(const JawAngle& jaw) {
   std::unique_ptr<StepParts> parts(new StepParts(jaw));
-  auto film = simulation::place_film(*jaw.model, jaw.spec.films[0]);
+  auto film = plan::place_film(*jaw.model, jaw.spec.films[0]);
   if (!film.ok()) return film.status();
   parts->films_.push_back(*std::move(film));
-  auto tissue = simulation::set_up_tissue(*jaw.model, parts->films_, jaw.spec);
+  auto tissue = mechanics::set_up_tissue(*jaw.model, parts->films_, jaw.spec);
   if (!tissue.ok()) return tissue.status();
-  parts->tissue_ = std::make_unique<simulation::TissueSetup>(*std::move(tissue));
+  parts->tissue_ = std::make_unique<mechanics::TissueSetup>(*std::move(tissue));
   const solid::Tissue& solid = parts->tissue_->tissue;
   const film::FilmGrid& grid = parts->films_[0].grid;
   std::vector<coupling::GapVolume> gaps;

@@ -7,9 +7,9 @@
 #include "absl/status/statusor.h"
 #include "core/coupling/gap_system.h"
 #include "core/film/film_projection.h"
-#include "core/simulation/film_layout.h"
+#include "core/mechanics/tissue_setup.h"
+#include "core/plan/film_layout.h"
 #include "core/simulation/simulation.h"
-#include "core/simulation/tissue_setup.h"
 #include "tests/bench/jaw_angle.h"
 
 namespace lipofill::bench {
@@ -64,8 +64,8 @@ class StepParts {
   void begin_film_step();
 
   const JawAngle& jaw_;
-  std::vector<simulation::FilmLayout> films_;
-  std::unique_ptr<simulation::TissueSetup> tissue_;
+  std::vector<plan::FilmLayout> films_;
+  std::unique_ptr<mechanics::TissueSetup> tissue_;
   std::unique_ptr<coupling::GapSystem> gaps_;
   std::unique_ptr<film::FilmProjection> projection_;
   film::FilmMetric rest_metric_;

@@ -58,7 +58,7 @@ absl::Status set_up(const Options& options, Findings& findings) {
   return absl::OkStatus();
 }
 
-absl::Status run_settled(const JawAngle& jaw, const simulation::SimulationSpec& spec, std::vector<SettledRun>& runs) {
+absl::Status run_settled(const JawAngle& jaw, const plan::SimulationSpec& spec, std::vector<SettledRun>& runs) {
   auto run = run_to_settled(jaw, spec);
   if (!run.ok()) return run.status();
   runs.push_back(*std::move(run));

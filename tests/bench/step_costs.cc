@@ -7,8 +7,8 @@
 namespace lipofill::bench {
 namespace {
 
-using simulation::StepCost;
-using simulation::StepTimes;
+using step::StepCost;
+using step::StepTimes;
 
 constexpr std::array<std::pair<const char*, double StepTimes::*>, 5> kPhases = {{{"element", &StepTimes::element},
                                                                                  {"factor", &StepTimes::factor},

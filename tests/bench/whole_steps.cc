@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "server/rpc/frame_encoding.h"
+#include "server/wire/frame_encoding.h"
 
 namespace lipofill::bench {
 namespace {
@@ -22,7 +22,7 @@ absl::Status check_running(const Simulation& simulation) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<WholeSteps>> WholeSteps::create(const JawAngle& jaw) {
-  simulation::SimulationSpec large_steps = jaw.spec;
+  plan::SimulationSpec large_steps = jaw.spec;
   large_steps.step = kWarmUpStep;
   auto warm_up = Simulation::create(jaw.model, large_steps);
   if (!warm_up.ok()) return warm_up.status();
@@ -75,7 +75,7 @@ nlohmann::ordered_json WholeSteps::to_json() const {
           {"state_hash", simulation_->state_hash()}};
 }
 
-absl::StatusOr<SettledRun> run_to_settled(const JawAngle& jaw, const simulation::SimulationSpec& spec) {
+absl::StatusOr<SettledRun> run_to_settled(const JawAngle& jaw, const plan::SimulationSpec& spec) {
   SettledRun run;
   Stopwatch watch;
   auto created = Simulation::create(jaw.model, spec);

@@ -55,6 +55,6 @@ struct SettledRun {
 };
 
 /// INTERNAL when the simulation fails or ends before it settles.
-absl::StatusOr<SettledRun> run_to_settled(const JawAngle& jaw, const simulation::SimulationSpec& spec);
+absl::StatusOr<SettledRun> run_to_settled(const JawAngle& jaw, const plan::SimulationSpec& spec);
 
 }  // namespace lipofill::bench

@@ -9,20 +9,20 @@ namespace {
 using namespace lipofill;
 
 std::unique_ptr<simulation::Simulation> make_simulation() {
-  simulation::FaceModelSpec model;
+  model::FaceModelSpec model;
   model.region = geometry::SquareSpec{0.016, 0.016};
   model.n_xi = model.n_eta = 4;
   model.layers = {{"skin", {geometry::ScalarField::constant(2e-3), 1}, {1e5, 0.45, 1100.0}},
                   {"muscle", {geometry::ScalarField::constant(8e-3), 1}, {2e5, 0.45, 1050.0}}};
-  simulation::SimulationSpec spec;
-  simulation::FilmSpec film;
+  plan::SimulationSpec spec;
+  plan::FilmSpec film;
   film.name = "film";
   film.below_layer = "skin";
   film.n_xi = film.n_eta = 2;
-  film.zones = {{"all", simulation::ChartBox{}}};
+  film.zones = {{"all", geometry::ChartBox{}}};
   spec.films = {film};
   spec.injections = {{"all", 0.02e-6, 1e-7, std::nullopt, geometry::ChartPoint{0.55, 0.45}}};
-  return *simulation::Simulation::create(*simulation::build_face_model(model, nullptr), spec);
+  return *simulation::Simulation::create(*model::build_face_model(model, nullptr), spec);
 }
 
 }  // namespace

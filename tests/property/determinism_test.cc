@@ -23,8 +23,8 @@ std::string hash_after(Simulation& simulation, int steps) {
   return simulation.state_hash();
 }
 
-SimulationSpec plan_with_everything(CouplingMode coupling) {
-  SimulationSpec spec = make_small_plan();
+plan::SimulationSpec plan_with_everything(plan::CouplingMode coupling) {
+  plan::SimulationSpec spec = make_small_plan();
   spec.films[0].zones = {{"left", ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", ChartBox{0.5, 1.0, 0.0, 1.0}}};
   spec.injections = {{"left", 0.1e-6, 1e-6, std::nullopt, std::nullopt},
                      {"right", 0.1e-6, 2e-6, std::nullopt, geometry::ChartPoint{0.7, 0.5}}};
@@ -37,14 +37,14 @@ SimulationSpec plan_with_everything(CouplingMode coupling) {
 }
 
 TEST(Determinism, ARunAgainGivesTheSameBytes) {
-  for (const CouplingMode coupling : {CouplingMode::kExact, CouplingMode::kLumped}) {
-    const SimulationSpec spec = plan_with_everything(coupling);
+  for (const plan::CouplingMode coupling : {plan::CouplingMode::kExact, plan::CouplingMode::kLumped}) {
+    const plan::SimulationSpec spec = plan_with_everything(coupling);
     EXPECT_EQ(hash_after(*make_small_simulation(spec), kSteps), hash_after(*make_small_simulation(spec), kSteps));
   }
 }
 
 TEST(Determinism, ManyThreadsAtOnceGiveTheSameBytes) {
-  const SimulationSpec spec = plan_with_everything(CouplingMode::kExact);
+  const plan::SimulationSpec spec = plan_with_everything(plan::CouplingMode::kExact);
   const std::string alone = hash_after(*make_small_simulation(spec), kSteps);
   std::vector<std::string> hashes(6);
   std::vector<std::thread> threads;
@@ -57,15 +57,15 @@ TEST(Determinism, ManyThreadsAtOnceGiveTheSameBytes) {
 
 /// Tissue whose best order is by nested dissection, with a film in its middle.
 std::string hash_of_a_square_of_its_own() {
-  FaceModelSpec face = make_small_model_spec();
+  model::FaceModelSpec face = make_small_model_spec();
   face.region = geometry::SquareSpec{0.04, 0.04};
   face.n_xi = face.n_eta = 8;
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.films[0].extent = ChartBox{0.125, 0.875, 0.125, 0.875};
   spec.films[0].n_xi = spec.films[0].n_eta = 3;
   spec.injections = {{"all", 0.05e-6, 0.1e-6, 0.0, std::nullopt}};
   spec.probes.clear();
-  const auto model = build_face_model(face, nullptr);
+  const auto model = model::build_face_model(face, nullptr);
   const auto simulation = Simulation::create(model.value(), spec);
   return hash_after(*simulation.value(), 8);
 }
@@ -93,7 +93,7 @@ TEST(Determinism, ManyModelsAnalysedAtOnceGiveTheSameBytes) {
 }
 
 TEST(Snapshot, RestoredStepEqualsTheStepAtEveryPointOfARun) {
-  const SimulationSpec spec = plan_with_everything(CouplingMode::kExact);
+  const plan::SimulationSpec spec = plan_with_everything(plan::CouplingMode::kExact);
   const auto original = make_small_simulation(spec);
   const auto restored = make_small_simulation(spec);
   for (int k = 0; k < kSteps; ++k) {
@@ -107,8 +107,8 @@ TEST(Snapshot, RestoredStepEqualsTheStepAtEveryPointOfARun) {
 }
 
 TEST(Snapshot, RestoredStepEqualsTheStepWhereStepsGrowWhileInjecting) {
-  SimulationSpec spec = plan_with_everything(CouplingMode::kExact);
-  spec.goal = TimeGoal::kSettledShape;
+  plan::SimulationSpec spec = plan_with_everything(plan::CouplingMode::kExact);
+  spec.goal = plan::TimeGoal::kSettledShape;
   spec.max_injection_step = 0.1;
   const auto original = make_small_simulation(spec);
   const auto restored = make_small_simulation(spec);
@@ -122,10 +122,10 @@ TEST(Snapshot, RestoredStepEqualsTheStepWhereStepsGrowWhileInjecting) {
 }
 
 TEST(Snapshot, InjectionsOfALiveRunAreInThePlanOfTheOneThatGoesOn) {
-  SimulationSpec spec = plan_with_everything(CouplingMode::kExact);
+  plan::SimulationSpec spec = plan_with_everything(plan::CouplingMode::kExact);
   spec.max_injection_step = 0.1;
   const auto original = make_small_simulation(spec);
-  const InjectionSpec more{"left", 0.05e-6, 1e-6, std::nullopt, std::nullopt};
+  const plan::InjectionSpec more{"left", 0.05e-6, 1e-6, std::nullopt, std::nullopt};
   for (int k = 0; k < kSteps; ++k) {
     if (k % 7 == 3) {
       const auto resolved = original->resolve(more);
@@ -139,7 +139,7 @@ TEST(Snapshot, InjectionsOfALiveRunAreInThePlanOfTheOneThatGoesOn) {
     fresh->advance_step();
     ASSERT_EQ(fresh->state_hash(), original->state_hash()) << "step " << k;
   }
-  SimulationSpec full = spec;
+  plan::SimulationSpec full = spec;
   full.injections.assign(1000, {"left", 1e-9, 1e-6, 0.0, std::nullopt});
   EXPECT_EQ(make_small_simulation(full)->inject(more).code(), absl::StatusCode::kResourceExhausted);
 }
@@ -171,7 +171,7 @@ TEST(Snapshot, RefusesWhatIsNotItsState) {
     EXPECT_EQ(simulation->restore(impossible).code(), absl::StatusCode::kDataLoss);
     EXPECT_EQ(simulation->state_hash(), hash);
   }
-  SimulationSpec other = make_small_plan();
+  plan::SimulationSpec other = make_small_plan();
   other.films[0].n_xi = 5;
   EXPECT_EQ(make_small_simulation(other)->restore(good).code(), absl::StatusCode::kDataLoss);
 }

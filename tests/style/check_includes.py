@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Checks that includes follow the layout: dependencies between folders point one way.
 
-    core/base <- geometry <- {solid, film, anatomy} <- coupling <- simulation,  then server on core and proto, client on proto alone;
+    core/base <- geometry <- {solid, film, anatomy} <- coupling <- model <- plan <- mechanics <- step <- simulation <- export,
+    then server on core and proto, client on proto alone;
     only server/rpc sees both proto and core; core sees neither gRPC nor Protobuf.
 
 Exit code 1 and a line a breach when they do not.
@@ -11,6 +12,7 @@ import pathlib
 import re
 import sys
 
+BELOW_MODEL = {"core/base", "core/geometry", "core/anatomy", "core/solid", "core/film", "core/coupling"}
 ALLOWED = {
     "core/base": {"core/base"},
     "core/geometry": {"core/base", "core/geometry"},
@@ -18,14 +20,22 @@ ALLOWED = {
     "core/solid": {"core/base", "core/geometry", "core/solid"},
     "core/film": {"core/base", "core/geometry", "core/film"},
     "core/coupling": {"core/base", "core/geometry", "core/solid", "core/film", "core/coupling"},
-    "core/simulation": {
-        "core/base", "core/geometry", "core/anatomy", "core/solid", "core/film", "core/coupling", "core/simulation",
-    },
+    "core/model": BELOW_MODEL | {"core/model"},
+    "core/plan": BELOW_MODEL | {"core/model", "core/plan"},
+    "core/mechanics": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics"},
+    "core/step": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics", "core/step"},
+    "core/simulation": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics", "core/step", "core/simulation"},
+    "core/export": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics", "core/simulation", "core/export"},
     "server/store": {"core/base", "server/store"},
     "server/security": {"core/base", "server/store", "server/security"},
     "server/ops": {"core/base", "server/security", "server/ops"},
-    "server/sessions": {"core/base", "core/geometry", "core/simulation", "server/store", "server/sessions"},
-    "server/rpc": {"core", "proto", "grpc", "server"},
+    "server/sessions": {"core", "server/store", "server/sessions"},
+    "server/wire": {"core", "proto", "grpc", "server"},
+    "server/entry": {"core", "proto", "grpc", "server"},
+    "server/backend": {"core", "proto", "grpc", "server"},
+    "server/patients": {"core", "proto", "grpc", "server"},
+    "server/simulations": {"core", "proto", "grpc", "server"},
+    "server/frames": {"core", "proto", "grpc", "server"},
     "server": {"core/base", "server"},
     "client": {"proto", "grpc", "client"},
 }

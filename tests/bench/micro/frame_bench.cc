@@ -2,7 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "server/rpc/frame_encoding.h"
+#include "server/wire/frame_encoding.h"
 #include "tests/bench/micro/micro_case.h"
 
 namespace lipofill::bench {

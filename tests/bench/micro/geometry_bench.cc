@@ -8,7 +8,7 @@
 #include "core/geometry/scan_region.h"
 #include "core/geometry/surface_chart.h"
 #include "core/geometry/surface_reader.h"
-#include "core/simulation/face_model.h"
+#include "core/model/face_model.h"
 #include "tests/bench/jaw_angle.h"
 
 namespace lipofill::bench {
@@ -105,7 +105,7 @@ void chart(benchmark::State& state) {
 /// All of it, layers included.
 void build_model(benchmark::State& state) {
   const auto face = load_sample_face(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(simulation::build_face_model(face->model, nullptr).ok());
+  for (auto _ : state) benchmark::DoNotOptimize(model::build_face_model(face->model, nullptr).ok());
   state.SetItemsProcessed(state.iterations() * face->model.n_xi * face->model.n_eta);
 }
 

@@ -9,11 +9,11 @@
 #include "client/cpp/frame_watcher.h"
 #include "client/cpp/scan_upload.h"
 #include "core/geometry/surface_reader.h"
-#include "core/simulation/face_model.h"
+#include "core/model/face_model.h"
 #include "core/simulation/simulation.h"
-#include "server/rpc/frame_encoding.h"
-#include "server/rpc/model_conversion.h"
-#include "server/rpc/simulation_conversion.h"
+#include "server/wire/frame_encoding.h"
+#include "server/wire/model_conversion.h"
+#include "server/wire/simulation_conversion.h"
 #include "tests/bench/service/refined_scan.h"
 #include "tests/bench/service/served_plan.h"
 
@@ -51,13 +51,12 @@ absl::StatusOr<geometry::SurfaceMesh> read_scan(const client::PlanFile& plan) {
 }
 
 /// The building tells where it is: each of its stages is a phase.
-absl::StatusOr<std::shared_ptr<const simulation::FaceModel>> build(const simulation::FaceModelSpec& spec,
-                                                                   PhaseTimes& times) {
+absl::StatusOr<std::shared_ptr<const model::FaceModel>> build(const model::FaceModelSpec& spec, PhaseTimes& times) {
   std::optional<std::string> stage;
   const auto end_stage = [&] {
     if (stage) times.end(*stage);
   };
-  auto model = simulation::build_face_model(spec, [&](double, const char* next) {
+  auto model = model::build_face_model(spec, [&](double, const char* next) {
     end_stage();
     stage = next;
     return true;
@@ -65,8 +64,8 @@ absl::StatusOr<std::shared_ptr<const simulation::FaceModel>> build(const simulat
   return model;
 }
 
-absl::StatusOr<std::shared_ptr<const simulation::FaceModel>> build(const client::PlanFile& plan,
-                                                                   geometry::SurfaceMesh scan, PhaseTimes& times) {
+absl::StatusOr<std::shared_ptr<const model::FaceModel>> build(const client::PlanFile& plan, geometry::SurfaceMesh scan,
+                                                              PhaseTimes& times) {
   v1::ModelSpec message = plan.plan.model();
   message.mutable_scan_region()->set_scan("patients/bench/scans/scan");
   auto spec = server::to_face_model_spec(message);
@@ -76,7 +75,7 @@ absl::StatusOr<std::shared_ptr<const simulation::FaceModel>> build(const client:
 }
 
 absl::StatusOr<std::unique_ptr<simulation::Simulation>> create(const client::PlanFile& plan,
-                                                               std::shared_ptr<const simulation::FaceModel> model) {
+                                                               std::shared_ptr<const model::FaceModel> model) {
   v1::SimulationSpec message = plan.plan.simulation();
   message.set_model("patients/bench/models/model");
   auto spec = server::to_simulation_spec(message);

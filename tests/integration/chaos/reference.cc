@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "core/simulation/simulation.h"
-#include "server/rpc/model_conversion.h"
-#include "server/rpc/simulation_conversion.h"
+#include "server/wire/model_conversion.h"
+#include "server/wire/simulation_conversion.h"
 
 namespace lipofill::testing {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 std::unique_ptr<simulation::Simulation> make(const v1::ModelSpec& model, const v1::SimulationSpec& plan) {
   const auto face = server::to_face_model_spec(model);
   if (!face.ok()) return nullptr;
-  const auto built = simulation::build_face_model(*face, [](double, const char*) { return true; });
+  const auto built = model::build_face_model(*face, [](double, const char*) { return true; });
   const auto spec = server::to_simulation_spec(plan);
   if (!built.ok() || !spec.ok()) return nullptr;
   auto made = simulation::Simulation::create(*built, *spec);

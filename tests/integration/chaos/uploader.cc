@@ -1,7 +1,7 @@
 #include "tests/integration/chaos/uploader.h"
 
 #include "absl/strings/str_cat.h"
-#include "server/rpc/sha256.h"
+#include "server/wire/sha256.h"
 #include "tests/integration/service/service_fixture.h"
 
 namespace lipofill::testing {

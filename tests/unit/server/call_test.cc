@@ -1,4 +1,4 @@
-#include "server/rpc/call.h"
+#include "server/entry/call.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include "lipofill/v1/operation_service.pb.h"
 #include "lipofill/v1/patient_service.pb.h"
 #include "lipofill/v1/simulation_service.pb.h"
-#include "server/rpc/method_rules.h"
+#include "server/entry/method_rules.h"
 
 namespace lipofill::server {
 namespace {
@@ -61,7 +61,7 @@ TEST(MethodRules, KnowEveryMethodOfEveryService) {
     const auto* service = file->service(0);
     for (int i = 0; i < service->method_count(); ++i) {
       const std::string method = "/" + service->full_name() + "/" + service->method(i)->name();
-      EXPECT_TRUE(has_rule(method)) << method << " is not in server/rpc/method_rules.cc";
+      EXPECT_TRUE(has_rule(method)) << method << " is not in server/entry/method_rules.cc";
       const std::string& name = service->method(i)->name();
       EXPECT_FALSE(rule_of(method) == nullptr || rule_of(method)->is_open || rule_of(method)->least < Role::kViewer)
           << method << " must ask who calls";

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/field_violations.h"
-#include "server/rpc/model_conversion.h"
-#include "server/rpc/simulation_conversion.h"
+#include "server/wire/model_conversion.h"
+#include "server/wire/simulation_conversion.h"
 
 namespace lipofill::server {
 namespace {
@@ -42,8 +42,8 @@ TEST(ModelConversion, TurnsUnitsToSi) {
   EXPECT_EQ(spec->layers[0].geometry.elements_through, 1);
   EXPECT_DOUBLE_EQ(spec->layers[0].material.youngs_modulus, 1e5);
   EXPECT_DOUBLE_EQ(spec->layers[0].material.density, 1100);
-  EXPECT_EQ(spec->rim.kind, simulation::SupportKind::kRollers);
-  EXPECT_EQ(spec->base.kind, simulation::SupportKind::kElastic);
+  EXPECT_EQ(spec->rim.kind, model::SupportKind::kRollers);
+  EXPECT_EQ(spec->base.kind, model::SupportKind::kElastic);
   EXPECT_DOUBLE_EQ(spec->base.stiffness, 3e6);
 }
 
@@ -130,15 +130,15 @@ TEST(SimulationConversion, TurnsUnitsToSi) {
   ASSERT_TRUE(spec.ok()) << spec.status();
   EXPECT_DOUBLE_EQ(spec->fat_viscosity, 10);
   EXPECT_DOUBLE_EQ(spec->fat_density, 920) << "the default of the core";
-  const simulation::FilmSpec& film = spec->films[0];
+  const plan::FilmSpec& film = spec->films[0];
   EXPECT_DOUBLE_EQ(film.extent.eta_max, 0.8);
-  EXPECT_DOUBLE_EQ(std::get<simulation::Disc>(film.zones[1].shape).radius, 0.004);
-  EXPECT_EQ(std::get<simulation::NamedRegion>(film.zones[2].shape).name, "masseter_left");
-  EXPECT_DOUBLE_EQ(std::get<simulation::PaintedRegion>(film.zones[3].shape).cover.at(0.25, 0.5), 0.25);
+  EXPECT_DOUBLE_EQ(std::get<plan::Disc>(film.zones[1].shape).radius, 0.004);
+  EXPECT_EQ(std::get<plan::NamedRegion>(film.zones[2].shape).name, "masseter_left");
+  EXPECT_DOUBLE_EQ(std::get<plan::PaintedRegion>(film.zones[3].shape).cover.at(0.25, 0.5), 0.25);
   EXPECT_DOUBLE_EQ(film.rest_thickness.at(0, 0), 1e-4);
   EXPECT_DOUBLE_EQ(film.initial_thickness->at(0, 0), 2e-4);
-  EXPECT_EQ(film.wall_friction, simulation::WallFriction::kNone);
-  EXPECT_EQ(film.wall, simulation::FilmWallKind::kWinkler);
+  EXPECT_EQ(film.wall_friction, plan::WallFriction::kNone);
+  EXPECT_EQ(film.wall, plan::FilmWallKind::kWinkler);
   EXPECT_DOUBLE_EQ(film.wall_stiffness, 2e6);
   EXPECT_DOUBLE_EQ(spec->injections[0].volume, 2e-6);
   EXPECT_DOUBLE_EQ(spec->injections[0].rate, 0.5e-6);
@@ -148,7 +148,7 @@ TEST(SimulationConversion, TurnsUnitsToSi) {
   EXPECT_DOUBLE_EQ(*spec->max_step, 0.1);
   EXPECT_DOUBLE_EQ(spec->end, 7);
   EXPECT_DOUBLE_EQ(spec->settle_skin_speed, 0.5e-3);
-  EXPECT_EQ(spec->coupling, simulation::CouplingMode::kLumped);
+  EXPECT_EQ(spec->coupling, plan::CouplingMode::kLumped);
   EXPECT_DOUBLE_EQ(spec->gravity.y(), -9.81);
   EXPECT_DOUBLE_EQ(spec->damping_stiffness, 0.25);
   EXPECT_EQ(spec->probes[0].film, "deep");
@@ -157,7 +157,7 @@ TEST(SimulationConversion, TurnsUnitsToSi) {
 TEST(SimulationConversion, KeepsTheDefaultsOfTheCore) {
   const auto spec = to_simulation_spec(parse<v1::SimulationSpec>("model: 'm'"));
   ASSERT_TRUE(spec.ok()) << spec.status();
-  const simulation::SimulationSpec defaults;
+  const plan::SimulationSpec defaults;
   EXPECT_EQ(spec->fat_viscosity, defaults.fat_viscosity);
   EXPECT_EQ(spec->step, defaults.step);
   EXPECT_EQ(spec->end, defaults.end);
@@ -168,7 +168,7 @@ TEST(SimulationConversion, KeepsTheDefaultsOfTheCore) {
 TEST(SimulationConversion, ReadsTheGoalAndLetsGivenStepsWin) {
   const auto few = to_simulation_spec(parse<v1::SimulationSpec>("model: 'm' time { goal: SETTLED_SHAPE }"));
   ASSERT_TRUE(few.ok()) << few.status();
-  EXPECT_EQ(few->goal, simulation::TimeGoal::kSettledShape);
+  EXPECT_EQ(few->goal, plan::TimeGoal::kSettledShape);
   EXPECT_DOUBLE_EQ(*few->max_step, 60.0);
   EXPECT_DOUBLE_EQ(*few->max_injection_step, 0.5);
   EXPECT_DOUBLE_EQ(few->error_tolerance, 0.2e-3);
@@ -182,7 +182,7 @@ TEST(SimulationConversion, ReadsTheGoalAndLetsGivenStepsWin) {
       to_simulation_spec(parse<v1::SimulationSpec>("model: 'm' time { goal: SETTLED_SHAPE step_ms: 700 }"));
   EXPECT_DOUBLE_EQ(*long_step->max_injection_step, 0.7) << "no shorter than the step";
   const auto watched = to_simulation_spec(parse<v1::SimulationSpec>("model: 'm' time { max_injection_step_ms: 50 }"));
-  EXPECT_EQ(watched->goal, simulation::TimeGoal::kTransient);
+  EXPECT_EQ(watched->goal, plan::TimeGoal::kTransient);
   EXPECT_DOUBLE_EQ(*watched->max_injection_step, 0.05);
   EXPECT_FALSE(watched->max_step.has_value());
 }
@@ -227,7 +227,7 @@ TEST(SimulationConversion, ReadsFatLigamentsWallsAndConnectiveTissue) {
   EXPECT_DOUBLE_EQ(spec->films[0].walls[0].leakage, 2e-7);
   EXPECT_DOUBLE_EQ(spec->films[0].connective_tissue.stiffness, 5e5);
   EXPECT_EQ(spec->films[0].connective_tissue.entry_pressure, 900.0);
-  EXPECT_EQ(std::get<simulation::NamedLigament>(spec->ligaments[0].place).name, "zygomatic_left");
+  EXPECT_EQ(std::get<plan::NamedLigament>(spec->ligaments[0].place).name, "zygomatic_left");
   EXPECT_DOUBLE_EQ(spec->ligaments[0].slack, 1.5e-3);
   EXPECT_FALSE(spec->ligaments[0].stiffness.has_value());
   EXPECT_DOUBLE_EQ(*spec->ligaments[1].stiffness, 100.0);

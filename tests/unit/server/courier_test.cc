@@ -1,4 +1,4 @@
-#include "server/rpc/courier.h"
+#include "server/frames/courier.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/rpc/field_mask.h"
+#include "server/wire/field_mask.h"
 
 #include <gtest/gtest.h>
 

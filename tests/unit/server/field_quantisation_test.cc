@@ -1,4 +1,4 @@
-#include "server/rpc/field_quantisation.h"
+#include "server/wire/field_quantisation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

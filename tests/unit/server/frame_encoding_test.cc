@@ -1,4 +1,4 @@
-#include "server/rpc/frame_encoding.h"
+#include "server/wire/frame_encoding.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

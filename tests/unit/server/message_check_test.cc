@@ -1,4 +1,4 @@
-#include "server/rpc/message_check.h"
+#include "server/wire/message_check.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@ namespace {
 ModelCache::Build counting(int& builds) {
   return [&builds]() -> absl::StatusOr<ModelCache::Model> {
     ++builds;
-    return std::make_shared<const simulation::FaceModel>();
+    return std::make_shared<const model::FaceModel>();
   };
 }
 

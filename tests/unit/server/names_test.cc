@@ -1,4 +1,4 @@
-#include "server/rpc/names.h"
+#include "server/wire/names.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/rpc/report_conversion.h"
+#include "server/wire/report_conversion.h"
 
 #include <gtest/gtest.h>
 
@@ -82,7 +82,7 @@ TEST(ReportConversion, SeriesRowsAreInTheUnitsOfTheirNames) {
 }
 
 TEST(ReportConversion, CostsOfStepsAreInMillisecondsAndAddUp) {
-  simulation::StepCost step;
+  step::StepCost step;
   step.times = {0.001, 0.002, 0.003, 0.004, 0.005, 0.016};
   step.factorisations = 1;
   step.tissue_solves = 2;
@@ -120,7 +120,7 @@ TEST(ReportConversion, EveryStateHasAName) {
 }
 
 TEST(ReportConversion, MeasuresTheTissueOfASkewedGrid) {
-  simulation::FaceModel model;
+  model::FaceModel model;
   geometry::LayeredGrid& grid = model.geometry.grid;
   grid.n_xi = 2;
   grid.n_eta = 1;
@@ -136,13 +136,13 @@ TEST(ReportConversion, MeasuresTheTissueOfASkewedGrid) {
 }
 
 TEST(ReportConversion, TellsTheThicknessOfLayersAndWhatWasFoundOfTheBone) {
-  simulation::FaceModel model;
+  model::FaceModel model;
   model.geometry.grid.nodes = Eigen::Matrix3Xd::Zero(3, 1);
   EXPECT_FALSE(to_model_report(model).has_bone());
   model.layers.resize(1);
   model.layers[0].name = "muscle";
   model.thickness = {{2e-3, 5e-3, 9e-3}};
-  model.bone = simulation::BoneFinding{0.9, 0.25, {8e-3, 12e-3, 20e-3}};
+  model.bone = model::BoneFinding{0.9, 0.25, {8e-3, 12e-3, 20e-3}};
   const v1::ModelReport report = to_model_report(model);
   ASSERT_EQ(report.layers_size(), 1);
   EXPECT_EQ(report.layers(0).name(), "muscle");

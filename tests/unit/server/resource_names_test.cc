@@ -1,4 +1,4 @@
-#include "server/rpc/resource_names.h"
+#include "server/wire/resource_names.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

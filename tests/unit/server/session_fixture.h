@@ -92,17 +92,17 @@ class MemorySink : public SessionSink {
 
 /// A film with a wall of its own: steps of microseconds.
 inline std::unique_ptr<simulation::Simulation> make_simulation(double end_s) {
-  simulation::FaceModelSpec face;
+  model::FaceModelSpec face;
   face.region = geometry::SquareSpec{0.04, 0.04};
   face.n_xi = face.n_eta = 4;
-  const auto model = simulation::build_face_model(face, [](double, const char*) { return true; });
+  const auto model = model::build_face_model(face, [](double, const char*) { return true; });
   EXPECT_TRUE(model.ok()) << model.status();
-  simulation::SimulationSpec spec;
-  simulation::FilmSpec film;
+  plan::SimulationSpec spec;
+  plan::FilmSpec film;
   film.name = "plane";
   film.n_xi = film.n_eta = 3;
-  film.zones = {{"all", simulation::ChartBox{}}};
-  film.wall = simulation::FilmWallKind::kWinkler;
+  film.zones = {{"all", geometry::ChartBox{}}};
+  film.wall = plan::FilmWallKind::kWinkler;
   film.wall_stiffness = 1e7;
   spec.films = {film};
   spec.injections = {{"all", 1e-7, 1e-6, 0.0, std::nullopt}};

@@ -12,19 +12,19 @@ using ::testing::HasSubstr;
 
 /// Skin over a film, injected for a tenth of a second and at rest some seconds later.
 std::unique_ptr<simulation::Simulation> make_soft_simulation() {
-  simulation::FaceModelSpec face;
+  model::FaceModelSpec face;
   face.region = geometry::SquareSpec{0.04, 0.04};
   face.n_xi = face.n_eta = 16;
   face.layers = {{"skin", {geometry::ScalarField::constant(3e-3), 1}, {6e4, 0.45, 1100.0}}};
-  const auto model = simulation::build_face_model(face, [](double, const char*) { return true; });
+  const auto model = model::build_face_model(face, [](double, const char*) { return true; });
   EXPECT_TRUE(model.ok()) << model.status();
-  simulation::SimulationSpec spec;
-  simulation::FilmSpec film;
+  plan::SimulationSpec spec;
+  plan::FilmSpec film;
   film.name = "plane";
   film.below_layer = "skin";
   film.n_xi = film.n_eta = 8;
   film.rest_thickness = geometry::ScalarField::constant(0.5e-3);
-  film.zones = {{"all", simulation::ChartBox{0.2, 0.8, 0.2, 0.8}}};
+  film.zones = {{"all", geometry::ChartBox{0.2, 0.8, 0.2, 0.8}}};
   spec.films = {film};
   spec.injections = {{"all", 1e-7, 1e-6, 0.0, std::nullopt}};
   spec.settle_skin_speed = 0.05e-3;
@@ -81,8 +81,8 @@ TEST_F(PreviewTest, GoesOnWithoutAPreviewThatCannotBe) {
   SessionOptions chosen = options("a");
   chosen.preview = true;
   auto simulation = make_soft_simulation();
-  simulation::SimulationSpec spec = simulation->spec();
-  spec.films[0].zones = {{"all", simulation::ChartBox{0.28, 0.34, 0.2, 0.8}}};
+  plan::SimulationSpec spec = simulation->spec();
+  spec.films[0].zones = {{"all", geometry::ChartBox{0.28, 0.34, 0.2, 0.8}}};
   spec.injections[0].volume = 2e-8;
   auto narrow = simulation::Simulation::create(simulation->shared_model(), spec);
   ASSERT_TRUE(narrow.ok()) << narrow.status();

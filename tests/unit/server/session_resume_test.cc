@@ -14,10 +14,10 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr simulation::TimeGoal kTransient = simulation::TimeGoal::kTransient;
+constexpr plan::TimeGoal kTransient = plan::TimeGoal::kTransient;
 constexpr double kEnd_s = 3.0;  // 300 steps
 
-simulation::InjectionSpec more() {
+plan::InjectionSpec more() {
   return {"all", 2e-8, 1e-6, std::nullopt, std::nullopt};
 }
 

@@ -1,4 +1,4 @@
-#include "server/rpc/status_mapping.h"
+#include "server/wire/status_mapping.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include "core/base/field_violations.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
-#include "server/rpc/violation_prefix.h"
+#include "server/wire/violation_prefix.h"
 
 namespace lipofill::server {
 namespace {

@@ -1,11 +1,11 @@
-#include "server/rpc/tissue_figures.h"
+#include "server/wire/tissue_figures.h"
 
 #include <gmock/gmock.h>
 #include <google/protobuf/text_format.h>
 #include <google/protobuf/util/message_differencer.h>
 
 #include "core/base/field_violations.h"
-#include "server/rpc/model_conversion.h"
+#include "server/wire/model_conversion.h"
 
 namespace lipofill::server {
 namespace {

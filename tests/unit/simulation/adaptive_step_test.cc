@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/simulation/step_rules.h"
+#include "core/plan/step_rules.h"
 #include "tests/unit/simulation/small_case.h"
 
 namespace lipofill::simulation {
@@ -17,7 +17,7 @@ struct Outcome {
 };
 
 Outcome run_to(double end, double max_step, double tolerance) {
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.end = end;
   spec.settle_skin_speed = 0.0;
   spec.max_step = max_step;
@@ -42,7 +42,7 @@ TEST(AdaptiveStep, TakesFewerStepsForALooserTolerance) {
 }
 
 TEST(AdaptiveStep, AcceptedLongStepsKeepTheirTolerance) {
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.end = 20.0;
   spec.settle_skin_speed = 0.0;
   spec.max_step = 10.0;
@@ -61,8 +61,8 @@ TEST(AdaptiveStep, AcceptedLongStepsKeepTheirTolerance) {
 }
 
 /// Two injections with a pause before each, of lengths that no sum of equal steps meets.
-SimulationSpec make_plan_with_pauses() {
-  SimulationSpec spec = make_small_plan();
+plan::SimulationSpec make_plan_with_pauses() {
+  plan::SimulationSpec spec = make_small_plan();
   spec.injections = {{"all", 0.1e-6, 0.3e-6, 0.1 + 1.0 / 7.0, std::nullopt},
                      {"all", 0.2e-6, 0.7e-6, 1.1, geometry::ChartPoint{0.55, 0.45}}};
   spec.settle_skin_speed = 0.0;
@@ -71,7 +71,7 @@ SimulationSpec make_plan_with_pauses() {
 }
 
 TEST(AdaptiveStep, EndsWhereInjectionsAndTheSimulationStartAndEnd) {
-  SimulationSpec spec = make_plan_with_pauses();
+  plan::SimulationSpec spec = make_plan_with_pauses();
   spec.max_injection_step = 0.5;
   spec.max_step = 0.5;
   const double first = *spec.injections[0].start;
@@ -103,8 +103,8 @@ TEST(AdaptiveStep, EndsWhereInjectionsAndTheSimulationStartAndEnd) {
 }
 
 TEST(AdaptiveStep, WhileInjectingKeepsItsTolerance) {
-  SimulationSpec fixed = make_plan_with_pauses();
-  SimulationSpec growing = fixed;
+  plan::SimulationSpec fixed = make_plan_with_pauses();
+  plan::SimulationSpec growing = fixed;
   growing.max_injection_step = 0.5;
   growing.error_tolerance = 20e-6;
   const auto a = make_small_simulation(fixed);
@@ -121,7 +121,7 @@ TEST(AdaptiveStep, WhileInjectingKeepsItsTolerance) {
 }
 
 TEST(AdaptiveStep, ALiveInjectionStartsAndEndsWhereItShould) {
-  SimulationSpec spec = make_plan_with_pauses();
+  plan::SimulationSpec spec = make_plan_with_pauses();
   spec.max_injection_step = 0.5;
   spec.max_step = 0.5;
   const auto simulation = make_small_simulation(spec);
@@ -139,14 +139,14 @@ TEST(AdaptiveStep, ALiveInjectionStartsAndEndsWhereItShould) {
 }
 
 TEST(SettledShape, IsThatOfShortStepsInAFewLongOnes) {
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.end = 600.0;
   spec.films[0].rest_thickness = geometry::ScalarField::constant(0.5e-3);
   spec.settle_skin_speed = 0.002e-3;
-  SimulationSpec watched = spec;
+  plan::SimulationSpec watched = spec;
   watched.max_step = 0.5;
-  spec.goal = TimeGoal::kSettledShape;
-  const TimeFigures figures = figures_of(spec.goal);
+  spec.goal = plan::TimeGoal::kSettledShape;
+  const plan::TimeFigures figures = plan::figures_of(spec.goal);
   spec.max_step = figures.max_step;
   spec.max_injection_step = figures.max_injection_step;
   spec.error_tolerance = figures.error_tolerance;
@@ -164,7 +164,7 @@ TEST(SettledShape, IsThatOfShortStepsInAFewLongOnes) {
 }
 
 TEST(AdaptiveStep, SaysHowFarTheSkinHasStillToGo) {
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.end = 60.0;
   spec.max_step = 2.0;
   spec.settle_skin_speed = 0.05e-3;
@@ -172,7 +172,7 @@ TEST(AdaptiveStep, SaysHowFarTheSkinHasStillToGo) {
   while (simulation->phase() == Phase::kRunning) simulation->advance_step();
   ASSERT_EQ(simulation->phase(), Phase::kSettled) << simulation->reason();
   const double estimate = simulation->report().settling_error;
-  SimulationSpec longer = spec;
+  plan::SimulationSpec longer = spec;
   longer.settle_skin_speed = 1e-9;
   const auto rest = make_small_simulation(longer);
   while (rest->phase() == Phase::kRunning) rest->advance_step();

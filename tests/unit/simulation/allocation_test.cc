@@ -11,8 +11,8 @@ namespace {
 constexpr int kWarmUpSteps = 12;
 constexpr int kCountedSteps = 12;
 
-long count_allocations_of_steps(const SimulationSpec& spec, const FaceModelSpec& model_spec) {
-  auto model = build_face_model(model_spec, nullptr);
+long count_allocations_of_steps(const plan::SimulationSpec& spec, const model::FaceModelSpec& model_spec) {
+  auto model = model::build_face_model(model_spec, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
   if (!model.ok()) return -1;
   auto simulation = Simulation::create(*model, spec);
@@ -32,15 +32,15 @@ TEST(Allocation, AStepOfFewCellsHasNone) {
 
 TEST(Allocation, AStepOfManyCellsHasNone) {
   // Pressures by conjugate gradients.
-  FaceModelSpec model = make_small_model_spec();
+  model::FaceModelSpec model = make_small_model_spec();
   model.n_xi = model.n_eta = 24;
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.films[0].n_xi = spec.films[0].n_eta = 12;
   EXPECT_EQ(count_allocations_of_steps(spec, model), 0);
 }
 
 TEST(Allocation, AStepOfFatWithInertiaOrYieldStressHasNone) {
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.fat_viscosity = 0.05;
   EXPECT_EQ(count_allocations_of_steps(spec, make_small_model_spec()), 0);
   spec.fat_viscosity = 10.0;

@@ -8,8 +8,8 @@ namespace {
 
 using geometry::ChartPoint;
 
-LigamentSpec make_ligament() {
-  LigamentSpec ligament;
+plan::LigamentSpec make_ligament() {
+  plan::LigamentSpec ligament;
   ligament.name = "septum";
   ligament.place = std::vector<geometry::SkinPoint>{ChartPoint{0.5, 0.5}};
   ligament.stiffness = 100.0;
@@ -17,16 +17,16 @@ LigamentSpec make_ligament() {
 }
 
 /// A plan with one ligament, changed.
-auto with_ligament(std::function<void(LigamentSpec&)> change) {
-  return [change](SimulationSpec& spec) {
+auto with_ligament(std::function<void(plan::LigamentSpec&)> change) {
+  return [change](plan::SimulationSpec& spec) {
     spec.ligaments = {make_ligament()};
     change(spec.ligaments[0]);
   };
 }
 
 /// A plan with one wall across its zone, changed.
-auto with_wall(std::function<void(WallSpec&)> change) {
-  return [change](SimulationSpec& spec) {
+auto with_wall(std::function<void(plan::WallSpec&)> change) {
+  return [change](plan::SimulationSpec& spec) {
     spec.films[0].walls = {{"septum", {ChartPoint{0.5, 0.0}, ChartPoint{0.5, 1.0}}, {}, 0.0}};
     change(spec.films[0].walls[0]);
   };
@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadPlan{"YieldWithoutFriction",
                 [](auto& s) {
                   s.fat_yield_stress = 5;
-                  s.films[0].wall_friction = WallFriction::kNone;
+                  s.films[0].wall_friction = plan::WallFriction::kNone;
                 },
                 "films[0].wall_friction", "NONE"},
         BadPlan{"SuctionLimit", [](auto& s) { s.suction_limit = -1; }, "suction_limit_pa", "-1 Pa"},
@@ -75,14 +75,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "ligaments[0].points.points[0]", "1.5"},
         BadPlan{"LigamentWhereTissueIsInOnePiece",
                 [](auto& s) {
-                  s.films[0].zones[0].shape = ChartBox{0.0, 0.5, 0.0, 1.0};
+                  s.films[0].zones[0].shape = geometry::ChartBox{0.0, 0.5, 0.0, 1.0};
                   s.injections[0].site = ChartPoint{0.25, 0.45};
                   s.probes.clear();
                   s.ligaments = {make_ligament()};
                   s.ligaments[0].place = std::vector<geometry::SkinPoint>{ChartPoint{0.9, 0.5}};
                 },
                 "ligaments[0].points.points[0]", "no zone of the film parts the tissue"},
-        BadPlan{"LigamentUnknownToAnatomy", with_ligament([](auto& l) { l.place = NamedLigament{"cruciate_left"}; }),
+        BadPlan{"LigamentUnknownToAnatomy",
+                with_ligament([](auto& l) { l.place = plan::NamedLigament{"cruciate_left"}; }),
                 "ligaments[0].anatomical", "cruciate"},
         BadPlan{"WallName", with_wall([](auto& w) { w.path.resize(1, ChartPoint{}); }), "films[0].walls[0].path.points",
                 "are 1, must be 2 to 256"},
@@ -108,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "films[0].connective_tissue.entry_pressure_pa", "-5 Pa"},
         BadPlan{"FibresBetweenRigidWalls",
                 [](auto& s) {
-                  s.films[0].wall = FilmWallKind::kRigid;
+                  s.films[0].wall = plan::FilmWallKind::kRigid;
                   s.films[0].below_layer = "";
                   s.films[0].connective_tissue = {1e6, 10.0};
                 },

@@ -13,7 +13,7 @@ namespace lipofill::simulation {
 
 struct BadPlan {
   std::string name;
-  std::function<void(SimulationSpec&)> spoil;
+  std::function<void(plan::SimulationSpec&)> spoil;
   std::string field;
   std::string description;  ///< part of it: the value or the bound
 };
@@ -23,7 +23,7 @@ class PlanIsRefused : public testing::TestWithParam<BadPlan> {};
 
 inline void expect_refused(const BadPlan& bad) {
   using testing::Field;
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   bad.spoil(spec);
   const auto created = Simulation::create(make_small_model(), spec);
   ASSERT_FALSE(created.ok());

@@ -14,7 +14,7 @@
 #include "core/film/edge_thickness.h"
 #include "core/film/film_projection.h"
 #include "core/film/viscosity.h"
-#include "core/simulation/tissue_setup.h"
+#include "core/mechanics/tissue_setup.h"
 #include "core/solid/hex_quality.h"
 #include "tests/unit/simulation/allocation_counter.h"
 #include "tests/unit/simulation/small_case.h"
@@ -33,27 +33,27 @@ TEST(AllocationCounter, SeesVectorsMatricesAndStrings) {
 
 /// All that a step may come across: tension at rest, a ligament, connective tissue, springs below, walls that leak.
 struct Everything {
-  std::shared_ptr<const FaceModel> model;
-  SimulationSpec spec = make_small_plan();
-  std::vector<FilmLayout> films;
-  std::unique_ptr<TissueSetup> setup;
+  std::shared_ptr<const model::FaceModel> model;
+  plan::SimulationSpec spec = make_small_plan();
+  std::vector<plan::FilmLayout> films;
+  std::unique_ptr<mechanics::TissueSetup> setup;
   std::unique_ptr<coupling::GapSystem> gaps;
   Eigen::Matrix3Xd x;
 
   Everything() {
-    FaceModelSpec model_spec = make_small_model_spec();
+    model::FaceModelSpec model_spec = make_small_model_spec();
     model_spec.layers[0].material.prestress = 1e3;
-    model_spec.base = {SupportKind::kElastic, 1e7};
-    model = build_face_model(model_spec, nullptr).value();
+    model_spec.base = {model::SupportKind::kElastic, 1e7};
+    model = model::build_face_model(model_spec, nullptr).value();
     spec.films[0].walls = {{"septum", {geometry::ChartPoint{0.4, 0.0}, geometry::ChartPoint{0.4, 1.0}}, {}, 1e-9}};
     spec.films[0].connective_tissue = {1e6, 100.0};
-    LigamentSpec ligament;
+    plan::LigamentSpec ligament;
     ligament.name = "post";
     ligament.place = std::vector<geometry::SkinPoint>{geometry::ChartPoint{0.55, 0.5}};
     ligament.stiffness = 50.0;
     spec.ligaments = {ligament};
-    films.push_back(place_film(*model, spec.films[0]).value());
-    setup = std::make_unique<TissueSetup>(set_up_tissue(*model, films, spec).value());
+    films.push_back(plan::place_film(*model, spec.films[0]).value());
+    setup = std::make_unique<mechanics::TissueSetup>(mechanics::set_up_tissue(*model, films, spec).value());
     const solid::Tissue& tissue = setup->tissue;
     std::vector<coupling::GapVolume> gap;
     gap.emplace_back(model->geometry.grid, setup->walls[0], films[0].grid, tissue.dof_of_component(), tissue.n_dofs());

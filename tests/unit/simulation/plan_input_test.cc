@@ -44,23 +44,23 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto& s) {
                   s.films[0].extent = {0.0, 0.5, 0.0, 1.0};
                   s.films[0].n_xi = 3;
-                  s.films[0].zones[0].shape = ChartBox{0.8, 0.9, 0.1, 0.2};
+                  s.films[0].zones[0].shape = geometry::ChartBox{0.8, 0.9, 0.1, 0.2};
                 },
                 "films[0].zones[0]", "claims no film cell"},
         BadPlan{"DiscOutside",
                 [](auto& s) {
-                  s.films[0].zones[0].shape = Disc{geometry::ChartPoint{1.5, 0.5}, 0.01};
+                  s.films[0].zones[0].shape = plan::Disc{geometry::ChartPoint{1.5, 0.5}, 0.01};
                 },
                 "films[0].zones[0].disc.centre", "1.5"},
-        BadPlan{"Region", [](auto& s) { s.films[0].zones[0].shape = NamedRegion{"elbow_left"}; },
+        BadPlan{"Region", [](auto& s) { s.films[0].zones[0].shape = plan::NamedRegion{"elbow_left"}; },
                 "films[0].zones[0].region", "'elbow_left'"},
         BadPlan{"Painted",
                 [](auto& s) {
-                  s.films[0].zones[0].shape = PaintedRegion{geometry::ScalarField{2, 2, {0, 1}}};
+                  s.films[0].zones[0].shape = plan::PaintedRegion{geometry::ScalarField{2, 2, {0, 1}}};
                 },
                 "films[0].zones[0].painted", "2"},
         BadPlan{"PaintedNothing",
-                [](auto& s) { s.films[0].zones[0].shape = PaintedRegion{geometry::ScalarField::constant(0.4)}; },
+                [](auto& s) { s.films[0].zones[0].shape = plan::PaintedRegion{geometry::ScalarField::constant(0.4)}; },
                 "films[0].zones[0]", "claims no film cell"},
         BadPlan{"RestThickness", [](auto& s) { s.films[0].rest_thickness = geometry::ScalarField::constant(-1e-3); },
                 "films[0].rest_thickness_mm", "-1 mm"},
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadPlan{"Start", [](auto& s) { s.injections[0].start = -2.0; }, "injections[0].start_s", "-2 s"},
         BadPlan{"Site",
                 [](auto& s) {
-                  s.films[0].zones[0].shape = ChartBox{0.0, 0.5, 0.0, 1.0};
+                  s.films[0].zones[0].shape = geometry::ChartBox{0.0, 0.5, 0.0, 1.0};
                   s.injections[0].site = geometry::ChartPoint{0.9, 0.9};
                 },
                 "injections[0].site", "(0.9, 0.9)"},
@@ -90,24 +90,24 @@ INSTANTIATE_TEST_SUITE_P(
         BadPlan{"Damping", [](auto& s) { s.damping_mass = -1; }, "damping.mass_per_s", "-1"},
         BadPlan{"TwiceTheZone",
                 [](auto& s) {
-                  s.films[0].zones[0].shape = ChartBox{0.0, 0.5, 0.0, 1.0};
-                  s.films[0].zones.push_back({"all", ChartBox{0.5, 1.0, 0.0, 1.0}});
+                  s.films[0].zones[0].shape = geometry::ChartBox{0.0, 0.5, 0.0, 1.0};
+                  s.films[0].zones.push_back({"all", geometry::ChartBox{0.5, 1.0, 0.0, 1.0}});
                 },
                 "films[0].zones[1].name", "a second time"}),
     [](const auto& test) { return test.param.name; });
 
 struct BadModel {
   std::string name;
-  std::function<void(FaceModelSpec&)> spoil;
+  std::function<void(model::FaceModelSpec&)> spoil;
   std::string field;
 };
 
 class ModelIsRefused : public testing::TestWithParam<BadModel> {};
 
 TEST_P(ModelIsRefused, NamingTheField) {
-  FaceModelSpec spec = make_small_model_spec();
+  model::FaceModelSpec spec = make_small_model_spec();
   GetParam().spoil(spec);
-  const auto model = build_face_model(spec, nullptr);
+  const auto model = model::build_face_model(spec, nullptr);
   ASSERT_FALSE(model.ok());
   EXPECT_EQ(model.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(field_violations_of(model.status()), Contains(Field(&FieldViolation::field, GetParam().field)))
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadModel{"Counts", [](auto& s) { s.n_xi = 100000; }, "n_xi"},
         BadModel{"ElasticRim",
                  [](auto& s) {
-                   s.rim = {SupportKind::kElastic, 0.0};
+                   s.rim = {model::SupportKind::kElastic, 0.0};
                  },
                  "rim.stiffness_kpa_per_mm"}),
     [](const auto& test) { return test.param.name; });

@@ -14,16 +14,16 @@ namespace lipofill::simulation {
 namespace {
 
 /// A square of 24 x 24 with a zone in its middle that comes to rest in some seconds.
-FaceModelSpec make_model_spec() {
-  FaceModelSpec spec = make_small_model_spec();
+model::FaceModelSpec make_model_spec() {
+  model::FaceModelSpec spec = make_small_model_spec();
   spec.n_xi = spec.n_eta = 24;
   return spec;
 }
 
-SimulationSpec make_plan() {
-  SimulationSpec spec = make_small_plan();
+plan::SimulationSpec make_plan() {
+  plan::SimulationSpec spec = make_small_plan();
   spec.films[0].n_xi = spec.films[0].n_eta = 12;
-  spec.films[0].zones = {{"all", ChartBox{0.16, 0.84, 0.16, 0.84}}};
+  spec.films[0].zones = {{"all", geometry::ChartBox{0.16, 0.84, 0.16, 0.84}}};
   spec.films[0].rest_thickness = geometry::ScalarField::constant(0.3e-3);
   spec.settle_skin_speed = 0.01e-3;
   spec.max_step = 0.5;
@@ -31,8 +31,8 @@ SimulationSpec make_plan() {
   return spec;
 }
 
-std::unique_ptr<Simulation> make_full(const SimulationSpec& spec) {
-  const auto model = build_face_model(make_model_spec(), nullptr);
+std::unique_ptr<Simulation> make_full(const plan::SimulationSpec& spec) {
+  const auto model = model::build_face_model(make_model_spec(), nullptr);
   auto made = Simulation::create(*model, spec);
   EXPECT_TRUE(made.ok()) << made.status();
   return *std::move(made);
@@ -129,9 +129,9 @@ TEST(Preview, SeesInjectionsThatWereAddedToThePlan) {
 }
 
 TEST(Preview, SaysWhatACoarseGridCannotHold) {
-  SimulationSpec spec = make_plan();
+  plan::SimulationSpec spec = make_plan();
   // Between the centres of the coarse film's cells.
-  spec.films[0].zones = {{"all", ChartBox{0.26, 0.32, 0.16, 0.84}}};
+  spec.films[0].zones = {{"all", geometry::ChartBox{0.26, 0.32, 0.16, 0.84}}};
   spec.injections = {{"all", 0.05e-6, 1e-6, std::nullopt, std::nullopt}};
   spec.probes.clear();
   const auto full = make_full(spec);
@@ -141,7 +141,7 @@ TEST(Preview, SaysWhatACoarseGridCannotHold) {
 }
 
 TEST(Preview, GivesUpAfterABoundedNumberOfSteps) {
-  SimulationSpec spec = make_plan();
+  plan::SimulationSpec spec = make_plan();
   spec.settle_skin_speed = 0.0;  // never
   spec.end = 1e6;
   const auto full = make_full(spec);

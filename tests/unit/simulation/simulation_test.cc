@@ -11,7 +11,7 @@ namespace lipofill::simulation {
 namespace {
 
 TEST(SimulationRun, KeepsTheLedgersEveryStepAndSettles) {
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.max_step = 0.2;
   const auto simulation = make_small_simulation(spec);
   double last_time = 0.0;
@@ -33,8 +33,8 @@ TEST(SimulationRun, KeepsTheLedgersEveryStepAndSettles) {
 }
 
 TEST(SimulationRun, LumpedKeepsTheTotalVolume) {
-  SimulationSpec spec = make_small_plan();
-  spec.coupling = CouplingMode::kLumped;
+  plan::SimulationSpec spec = make_small_plan();
+  spec.coupling = plan::CouplingMode::kLumped;
   const auto simulation = make_small_simulation(spec);
   for (int k = 0; k < 40; ++k) simulation->advance_step();
   ASSERT_EQ(simulation->phase(), Phase::kRunning) << simulation->reason();
@@ -44,7 +44,7 @@ TEST(SimulationRun, LumpedKeepsTheTotalVolume) {
 }
 
 TEST(SimulationRun, ZonesAreSealedFromEachOther) {
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.films[0].zones = {{"left", ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", ChartBox{0.5, 1.0, 0.0, 1.0}}};
   spec.injections = {{"left", 0.2e-6, 1e-6, std::nullopt, std::nullopt}};
   const auto simulation = make_small_simulation(spec);
@@ -55,13 +55,13 @@ TEST(SimulationRun, ZonesAreSealedFromEachOther) {
 }
 
 TEST(SimulationRun, PaintedZoneIsThatOfItsCells) {
-  SimulationSpec boxed = make_small_plan();
+  plan::SimulationSpec boxed = make_small_plan();
   boxed.films[0].zones = {{"all", ChartBox{0.0, 0.5, 0.0, 1.0}}};
   boxed.injections[0].site = geometry::ChartPoint{0.25, 0.45};
   boxed.probes.clear();
-  SimulationSpec painted = boxed;
+  plan::SimulationSpec painted = boxed;
   // Bilinear from 1 to 0: a half at xi = 0.5, between two columns of cells.
-  painted.films[0].zones = {{"all", PaintedRegion{geometry::ScalarField{2, 1, {1.0, 0.0}}}}};
+  painted.films[0].zones = {{"all", plan::PaintedRegion{geometry::ScalarField{2, 1, {1.0, 0.0}}}}};
   const auto one = make_small_simulation(boxed);
   const auto other = make_small_simulation(painted);
   for (int k = 0; k < 5; ++k) {
@@ -72,7 +72,7 @@ TEST(SimulationRun, PaintedZoneIsThatOfItsCells) {
 }
 
 TEST(SimulationRun, TakesFatOutAgainButNoMoreThanThereIs) {
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.injections = {{"all", 0.2e-6, 2e-6, std::nullopt, std::nullopt}, {"all", -0.19e-6, 1e-6, 0.5, std::nullopt}};
   spec.settle_skin_speed = 0.0;
   spec.end = 3.0;
@@ -93,11 +93,11 @@ TEST(SimulationRun, TakesFatOutAgainButNoMoreThanThereIs) {
 }
 
 /// Fat pressed between rigid walls has nowhere to go.
-SimulationSpec make_impossible_plan() {
-  SimulationSpec spec;
-  FilmSpec film;
+plan::SimulationSpec make_impossible_plan() {
+  plan::SimulationSpec spec;
+  plan::FilmSpec film;
   film.name = "film";
-  film.wall = FilmWallKind::kRigid;
+  film.wall = plan::FilmWallKind::kRigid;
   film.rest_thickness = geometry::ScalarField::constant(1e-3);
   film.n_xi = film.n_eta = 4;
   film.zones = {{"all", ChartBox{}}};
@@ -121,9 +121,9 @@ TEST(SimulationRun, AFailedStepLeavesTheStateBeforeIt) {
 }
 
 TEST(SimulationRun, LiveInjectionEqualsAPlannedOne) {
-  SimulationSpec planned = make_small_plan();
+  plan::SimulationSpec planned = make_small_plan();
   planned.injections.push_back({"all", 0.1e-6, 1e-6, 0.4, std::nullopt});
-  SimulationSpec live = make_small_plan();
+  plan::SimulationSpec live = make_small_plan();
   const auto a = make_small_simulation(planned);
   const auto b = make_small_simulation(live);
   ASSERT_TRUE(b->inject({"all", 0.1e-6, 1e-6, 0.4, std::nullopt}).ok());
@@ -135,7 +135,7 @@ TEST(SimulationRun, LiveInjectionEqualsAPlannedOne) {
 }
 
 TEST(SimulationRun, RefusesALiveInjectionOnceItHasEnded) {
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.end = 0.05;
   const auto simulation = make_small_simulation(spec);
   while (simulation->phase() == Phase::kRunning) simulation->advance_step();
@@ -146,13 +146,13 @@ TEST(SimulationRun, RefusesALiveInjectionOnceItHasEnded) {
 }
 
 TEST(SimulationRun, TwoFilmsInOnePlan) {
-  FaceModelSpec model_spec = make_small_model_spec();
+  model::FaceModelSpec model_spec = make_small_model_spec();
   model_spec.layers.insert(model_spec.layers.begin() + 1,
                            {"smas", {geometry::ScalarField::constant(1e-3), 1}, {5e4, 0.45, 1050.0}});
-  const auto model = build_face_model(model_spec, nullptr);
+  const auto model = model::build_face_model(model_spec, nullptr);
   ASSERT_TRUE(model.ok()) << model.status();
-  SimulationSpec spec = make_small_plan();
-  FilmSpec deep = spec.films[0];
+  plan::SimulationSpec spec = make_small_plan();
+  plan::FilmSpec deep = spec.films[0];
   deep.name = "deep";
   deep.below_layer = "smas";
   deep.zones = {{"below", ChartBox{}}};
@@ -191,7 +191,7 @@ TEST(SimulationFrames, MatchTheirTopologyAndTheReport) {
 }
 
 TEST(SimulationFrames, NumberTheZonesUnderTheSkin) {
-  SimulationSpec spec = make_small_plan();
+  plan::SimulationSpec spec = make_small_plan();
   spec.films[0].zones = {{"left", ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", ChartBox{0.5, 1.0, 0.0, 0.5}}};
   spec.injections[0].zone = "left";
   spec.injections[0].site.reset();
@@ -207,9 +207,9 @@ TEST(SimulationFrames, NumberTheZonesUnderTheSkin) {
 
 TEST(FaceModelHash, IsTheSameForTheSameSpecificationOnly) {
   EXPECT_EQ(make_small_model()->content_hash, make_small_model()->content_hash);
-  FaceModelSpec other = make_small_model_spec();
+  model::FaceModelSpec other = make_small_model_spec();
   other.layers[0].material.youngs_modulus *= 1.0 + 1e-12;
-  const auto model = build_face_model(other, nullptr);
+  const auto model = model::build_face_model(other, nullptr);
   ASSERT_TRUE(model.ok());
   EXPECT_NE((*model)->content_hash, make_small_model()->content_hash);
 }

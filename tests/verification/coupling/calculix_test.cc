@@ -7,7 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "core/simulation/calculix_deck.h"
+#include "core/export/calculix_deck.h"
 #include "tests/verification/coupling/calculix_run.h"
 #include "tests/verification/coupling/jaw_case.h"
 #include "tests/verification/film/film_cases.h"
@@ -48,7 +48,7 @@ double largest_rotation(const Simulation& simulation, const Eigen::Matrix3Xd& di
 }
 
 std::string deck_of(const Simulation& simulation) {
-  auto deck = simulation::CalculixDeck::create(simulation);
+  auto deck = exporting::CalculixDeck::create(simulation);
   EXPECT_TRUE(deck.ok()) << deck.status();
   return deck.ok() ? deck->read(size_t{1} << 30) : "";
 }
@@ -92,14 +92,14 @@ std::string title(const char* body, const Simulation& simulation, const Eigen::M
 
 /// 40 x 40 x 2 mm, clamped all round, over a film that holds `volume`.
 std::unique_ptr<Simulation> inflate_plate(double volume) {
-  simulation::FaceModelSpec model;
+  model::FaceModelSpec model;
   model.region = geometry::SquareSpec{0.04, 0.04};
   model.n_xi = model.n_eta = 24;
   model.layers = {{"plate", {ScalarField::constant(2e-3), 1}, {2e5, 0.45, 1100.0}}};
-  auto built = simulation::build_face_model(model, nullptr);
+  auto built = model::build_face_model(model, nullptr);
   EXPECT_TRUE(built.ok()) << built.status();
-  simulation::SimulationSpec spec;
-  spec.films = {make_film(simulation::FilmWallKind::kTissue, 12, 12)};
+  plan::SimulationSpec spec;
+  spec.films = {make_film(plan::FilmWallKind::kTissue, 12, 12)};
   spec.films[0].below_layer = "plate";
   spec.injections = {{"all", volume, volume, 0.0, std::nullopt}};
   spec.fat_viscosity = 1.0;
@@ -131,8 +131,8 @@ class JawPatch : public ::testing::Test {
     ASSERT_TRUE(jaw_.model);
   }
   std::unique_ptr<Simulation> inflate(double share) const {
-    simulation::SimulationSpec spec = jaw_.spec;
-    for (simulation::InjectionSpec& injection : spec.injections) injection.volume *= share;
+    plan::SimulationSpec spec = jaw_.spec;
+    for (plan::InjectionSpec& injection : spec.injections) injection.volume *= share;
     auto simulation = make_simulation(jaw_.model, spec);
     run(*simulation);
     return simulation;

@@ -21,12 +21,12 @@ double bending_stiffness(double thickness) {
 }
 
 /// A square plate clamped on its rim, over rigid bone with a film in between.
-std::shared_ptr<const simulation::FaceModel> make_plate(double thickness, int n) {
-  simulation::FaceModelSpec spec;
+std::shared_ptr<const model::FaceModel> make_plate(double thickness, int n) {
+  model::FaceModelSpec spec;
   spec.region = geometry::SquareSpec{kSide, kSide};
   spec.n_xi = spec.n_eta = n;
   spec.layers = {{"plate", {ScalarField::constant(thickness), 1}, {kYoungsModulus, kNu, 1100.0}}};
-  auto model = simulation::build_face_model(spec, nullptr);
+  auto model = model::build_face_model(spec, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
   return *model;
 }
@@ -37,9 +37,9 @@ struct Inflated {
 };
 
 /// At rest, with `volume` injected below a plate of n x n elements.
-Inflated inflate(double thickness, int n, double volume, const simulation::ZoneSpec& zone) {
-  simulation::SimulationSpec spec;
-  spec.films = {make_film(simulation::FilmWallKind::kTissue, n / 2, n / 2)};
+Inflated inflate(double thickness, int n, double volume, const plan::ZoneSpec& zone) {
+  plan::SimulationSpec spec;
+  spec.films = {make_film(plan::FilmWallKind::kTissue, n / 2, n / 2)};
   spec.films[0].below_layer = "plate";
   spec.films[0].zones = {zone};
   spec.films[0].rest_thickness = ScalarField::constant(3e-3);
@@ -73,7 +73,7 @@ struct SquarePlate {
 /// Pressure and deflection over Kirchhoff's for the same volume.
 Inflated relative_square(double thickness, int n) {
   const SquarePlate expected(thickness);
-  const Inflated measured = inflate(thickness, n, expected.volume, {"all", simulation::ChartBox{}});
+  const Inflated measured = inflate(thickness, n, expected.volume, {"all", geometry::ChartBox{}});
   return {measured.pressure / expected.pressure, measured.deflection / expected.deflection};
 }
 
@@ -115,7 +115,7 @@ TEST(InflatedPlate, DiscHasTheDeflectionAndPressureOfItsRadius) {
   const std::vector<double> sizes = {32, 64};
   Inflated fine;
   for (const double n : sizes) {
-    const simulation::Disc disc{geometry::ChartPoint{0.5, 0.5}, a};
+    const plan::Disc disc{geometry::ChartPoint{0.5, 0.5}, a};
     fine = inflate(thickness, static_cast<int>(n), volume, {"disc", disc});
     radii.push_back(std::sqrt(3.0 * volume / (kPi * fine.deflection)));
   }

@@ -7,9 +7,9 @@
 
 #include "core/coupling/coupled_factor.h"
 #include "core/coupling/film_solve.h"
-#include "core/simulation/coupled_step.h"
-#include "core/simulation/film_layout.h"
-#include "core/simulation/tissue_setup.h"
+#include "core/mechanics/tissue_setup.h"
+#include "core/plan/film_layout.h"
+#include "core/step/coupled_step.h"
 #include "tests/unit/simulation/small_case.h"
 #include "tests/verification/record.h"
 
@@ -18,15 +18,15 @@ namespace {
 
 /// A small two-layer tissue with one film, bent so that C has no symmetry to hide behind.
 struct TissueCase {
-  std::shared_ptr<const simulation::FaceModel> model = simulation::make_small_model();
-  std::vector<simulation::FilmLayout> films;
-  std::unique_ptr<simulation::TissueSetup> setup;
+  std::shared_ptr<const model::FaceModel> model = simulation::make_small_model();
+  std::vector<plan::FilmLayout> films;
+  std::unique_ptr<mechanics::TissueSetup> setup;
   std::unique_ptr<coupling::GapVolume> gap;
   Eigen::Matrix3Xd x;
 
   TissueCase() {
-    films.push_back(*simulation::place_film(*model, simulation::make_small_plan().films[0]));
-    setup = std::make_unique<simulation::TissueSetup>(*simulation::set_up_tissue(*model, films, {}));
+    films.push_back(*plan::place_film(*model, simulation::make_small_plan().films[0]));
+    setup = std::make_unique<mechanics::TissueSetup>(*mechanics::set_up_tissue(*model, films, {}));
     const auto& tissue = setup->tissue;
     gap = std::make_unique<coupling::GapVolume>(model->geometry.grid, setup->walls[0], films[0].grid,
                                                 tissue.dof_of_component(), tissue.n_dofs());

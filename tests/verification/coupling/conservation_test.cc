@@ -5,8 +5,8 @@
 #include <Eigen/Geometry>
 
 #include "core/coupling/gap_volume.h"
-#include "core/simulation/film_layout.h"
-#include "core/simulation/tissue_setup.h"
+#include "core/mechanics/tissue_setup.h"
+#include "core/plan/film_layout.h"
 #include "tests/verification/film/film_cases.h"
 #include "tests/verification/record.h"
 
@@ -19,25 +19,25 @@ using geometry::ScalarField;
 constexpr double kSide = 0.04;
 
 /// Skin over a deeper layer on bone: both walls of the film between them give way.
-std::shared_ptr<const simulation::FaceModel> make_two_layers() {
-  simulation::FaceModelSpec spec;
+std::shared_ptr<const model::FaceModel> make_two_layers() {
+  model::FaceModelSpec spec;
   spec.region = geometry::SquareSpec{kSide, kSide};
   spec.n_xi = spec.n_eta = 16;
   spec.layers = {{"skin", {ScalarField::constant(2e-3), 1}, {2e5, 0.45, 1100.0}},
                  {"fat", {ScalarField::constant(6e-3), 2}, {2e4, 0.48, 950.0}}};
-  auto model = simulation::build_face_model(spec, nullptr);
+  auto model = model::build_face_model(spec, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
   return *model;
 }
 
 /// A film of two zones side by side, their common edge sealed; fat goes into the left one at a point.
-simulation::SimulationSpec make_two_zones(simulation::FilmWallKind wall) {
-  simulation::SimulationSpec spec;
+plan::SimulationSpec make_two_zones(plan::FilmWallKind wall) {
+  plan::SimulationSpec spec;
   spec.films = {make_film(wall, 8, 8)};
-  spec.films[0].wall_stiffness = wall == simulation::FilmWallKind::kWinkler ? 1e6 : 0.0;
-  if (wall == simulation::FilmWallKind::kTissue) spec.films[0].below_layer = "skin";
-  spec.films[0].zones = {{"left", simulation::ChartBox{0.0, 0.5, 0.0, 1.0}},
-                         {"right", simulation::ChartBox{0.5, 1.0, 0.0, 1.0}}};
+  spec.films[0].wall_stiffness = wall == plan::FilmWallKind::kWinkler ? 1e6 : 0.0;
+  if (wall == plan::FilmWallKind::kTissue) spec.films[0].below_layer = "skin";
+  spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}},
+                         {"right", geometry::ChartBox{0.5, 1.0, 0.0, 1.0}}};
   spec.films[0].rest_thickness = ScalarField::constant(0.1e-3);
   spec.injections = {{"left", 0.5e-6, 1e-6, 0.0, ChartPoint{0.3, 0.4}}};
   spec.step = 0.02;
@@ -53,8 +53,8 @@ struct Ledger {
 };
 
 /// What the injected volume, the film's and the zones' say, every step.
-Ledger keep_ledger(simulation::FilmWallKind wall) {
-  const simulation::SimulationSpec spec = make_two_zones(wall);
+Ledger keep_ledger(plan::FilmWallKind wall) {
+  const plan::SimulationSpec spec = make_two_zones(wall);
   auto simulation = make_simulation(make_two_layers(), spec);
   if (!simulation) return {1.0, 1.0, 1.0};
   const double rest = simulation->zone_reports()[1].volume;
@@ -76,8 +76,8 @@ Ledger keep_ledger(simulation::FilmWallKind wall) {
 TEST(Conservation, VolumeAndSealedEdges) {
   Case ledger_case({"conservation/1-volume", "Volume and sealed edges, every step of an injection",
                     "None: what is injected is in the film, and none of it beyond a sealed edge."});
-  const Ledger tissue = keep_ledger(simulation::FilmWallKind::kTissue);
-  const Ledger winkler = keep_ledger(simulation::FilmWallKind::kWinkler);
+  const Ledger tissue = keep_ledger(plan::FilmWallKind::kTissue);
+  const Ledger winkler = keep_ledger(plan::FilmWallKind::kWinkler);
   ledger_case.record(
       {"film below tissue: |film - injected|/injected", "1", 1e-12, tissue.volume_error, 0.0, Bound::kAtMost});
   ledger_case.record({"film below tissue: |gap - film|/injected", "1", 1e-4, tissue.gap_error, 0.0, Bound::kAtMost});
@@ -94,7 +94,7 @@ struct EnergyLedger {
 };
 
 EnergyLedger keep_energy(double step) {
-  simulation::SimulationSpec spec = make_two_zones(simulation::FilmWallKind::kTissue);
+  plan::SimulationSpec spec = make_two_zones(plan::FilmWallKind::kTissue);
   spec.step = step;
   auto simulation = make_simulation(make_two_layers(), spec);
   if (!simulation) return {1.0, 1.0};
@@ -161,10 +161,10 @@ Imbalance add_up(const Eigen::Matrix3Xd& force, const Eigen::Matrix3Xd& x) {
 /// B^T p of an uneven pressure, with every node free to feel it and the walls bent apart.
 TEST(Conservation, ActionEqualsReaction) {
   const auto model = make_two_layers();
-  const simulation::SimulationSpec spec = make_two_zones(simulation::FilmWallKind::kTissue);
-  const auto layout = simulation::place_film(*model, spec.films[0]);
+  const plan::SimulationSpec spec = make_two_zones(plan::FilmWallKind::kTissue);
+  const auto layout = plan::place_film(*model, spec.films[0]);
   ASSERT_TRUE(layout.ok()) << layout.status();
-  const simulation::HeldMesh held = simulation::hold_mesh(*model, {*layout});
+  const mechanics::HeldMesh held = mechanics::hold_mesh(*model, {*layout});
   Eigen::Matrix3Xd x = held.split.mesh.rest_positions;
   for (int a = 0; a < x.cols(); ++a) {
     const Eigen::Vector3d X = x.col(a);

@@ -31,14 +31,14 @@ double decay_rate() {
 }
 
 /// Half a wavelength between planes of symmetry, a narrow strip on rollers: plane strain.
-std::shared_ptr<const simulation::FaceModel> make_strip(int n, int through) {
-  simulation::FaceModelSpec spec;
+std::shared_ptr<const model::FaceModel> make_strip(int n, int through) {
+  model::FaceModelSpec spec;
   spec.region = geometry::SquareSpec{0.5 * kWavelength, 2.0 * kWavelength / n};
   spec.n_xi = n;
   spec.n_eta = 2;
   spec.layers = {{"layer", {ScalarField::constant(kHeight), through}, {kYoungsModulus, kNu, 1100.0}}};
-  spec.rim.kind = simulation::SupportKind::kRollers;
-  auto model = simulation::build_face_model(spec, nullptr);
+  spec.rim.kind = model::SupportKind::kRollers;
+  auto model = model::build_face_model(spec, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
   return *model;
 }
@@ -51,9 +51,9 @@ struct Decay {
 
 Decay measure_decay(int elements_a_wavelength, int through) {
   const int n = elements_a_wavelength / 2;
-  simulation::SimulationSpec spec;
+  plan::SimulationSpec spec;
   spec.fat_viscosity = kViscosity;
-  spec.films = {make_film(simulation::FilmWallKind::kTissue, n / 2, 1)};
+  spec.films = {make_film(plan::FilmWallKind::kTissue, n / 2, 1)};
   spec.films[0].below_layer = "layer";
   spec.films[0].rest_thickness = ScalarField::constant(kRest);
   const int samples = 257;

@@ -30,7 +30,7 @@ Eigen::Matrix3Xd run_changed(const Change& change) {
     }
   }
   plan.simulation.end = 0.4;
-  auto model = simulation::build_face_model(plan.model, nullptr);
+  auto model = model::build_face_model(plan.model, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
   if (!model.ok()) return {};
   auto simulation = simulation::Simulation::create(*model, plan.simulation);

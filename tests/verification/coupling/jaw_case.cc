@@ -7,8 +7,8 @@
 
 #include "client/cpp/plan_file.h"
 #include "core/geometry/surface_reader.h"
-#include "server/rpc/model_conversion.h"
-#include "server/rpc/simulation_conversion.h"
+#include "server/wire/model_conversion.h"
+#include "server/wire/simulation_conversion.h"
 
 namespace lipofill::verification {
 
@@ -35,7 +35,7 @@ JawPlan load_jaw_plan() {
 JawCase make_jaw_case() {
   JawPlan plan = load_jaw_plan();
   if (!plan.ok) return {};
-  auto model = simulation::build_face_model(plan.model, nullptr);
+  auto model = model::build_face_model(plan.model, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
   return {model.ok() ? *std::move(model) : nullptr, std::move(plan.simulation)};
 }

@@ -2,15 +2,15 @@
 
 #include <memory>
 
-#include "core/simulation/face_model.h"
-#include "core/simulation/simulation_spec.h"
+#include "core/model/face_model.h"
+#include "core/plan/simulation_spec.h"
 
 namespace lipofill::verification {
 
 /// The sample plan jaw_angle and the face shipped with it, in SI and in the scan's frame.
 struct JawPlan {
-  simulation::FaceModelSpec model;
-  simulation::SimulationSpec simulation;
+  model::FaceModelSpec model;
+  plan::SimulationSpec simulation;
   bool ok = false;
 };
 
@@ -18,8 +18,8 @@ struct JawPlan {
 JawPlan load_jaw_plan();
 
 struct JawCase {
-  std::shared_ptr<const simulation::FaceModel> model;
-  simulation::SimulationSpec spec;
+  std::shared_ptr<const model::FaceModel> model;
+  plan::SimulationSpec spec;
 };
 
 /// Builds the model of load_jaw_plan(); it is null where that fails, and the test with it.

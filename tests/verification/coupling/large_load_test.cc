@@ -13,9 +13,8 @@ using geometry::ChartPoint;
 using geometry::ScalarField;
 using simulation::Phase;
 
-simulation::TissueLayerSpec make_layer(const char* name, double thickness, double youngs_modulus,
-                                       double poisson_ratio) {
-  simulation::TissueLayerSpec layer;
+model::TissueLayerSpec make_layer(const char* name, double thickness, double youngs_modulus, double poisson_ratio) {
+  model::TissueLayerSpec layer;
   layer.name = name;
   layer.geometry = {ScalarField::constant(thickness), 1};
   layer.material = {youngs_modulus, poisson_ratio, 1050.0};
@@ -23,22 +22,22 @@ simulation::TissueLayerSpec make_layer(const char* name, double thickness, doubl
 }
 
 /// Figures of elastography (clinical.md): 1.8 mm of skin over 3 mm of fat thirty times softer.
-std::shared_ptr<const simulation::FaceModel> make_cheek() {
-  simulation::FaceModelSpec spec;
+std::shared_ptr<const model::FaceModel> make_cheek() {
+  model::FaceModelSpec spec;
   spec.region = geometry::SquareSpec{0.06, 0.06};
   spec.n_xi = spec.n_eta = 20;
   spec.layers = {make_layer("skin", 1.8e-3, 1e5, 0.48), make_layer("subcutaneous", 3e-3, 3e3, 0.49),
                  make_layer("smas", 1e-3, 5e4, 0.45), make_layer("muscle", 10e-3, 2e4, 0.49)};
-  auto model = simulation::build_face_model(spec, nullptr);
+  auto model = model::build_face_model(spec, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
   return *model;
 }
 
-simulation::SimulationSpec make_plan(double volume) {
-  simulation::SimulationSpec spec;
-  spec.films = {make_film(simulation::FilmWallKind::kTissue, 10, 10)};
+plan::SimulationSpec make_plan(double volume) {
+  plan::SimulationSpec spec;
+  spec.films = {make_film(plan::FilmWallKind::kTissue, 10, 10)};
   spec.films[0].below_layer = "subcutaneous";
-  spec.films[0].zones = {{"pocket", simulation::Disc{ChartPoint{0.5, 0.5}, 0.016}}};
+  spec.films[0].zones = {{"pocket", plan::Disc{ChartPoint{0.5, 0.5}, 0.016}}};
   spec.injections = {{"pocket", volume, 2e-6, 0.0, std::nullopt}};
   spec.fat_viscosity = 5.0;
   spec.step = 0.05;
@@ -78,7 +77,7 @@ TEST(LargeLoad, SkinRisesByFourTimesItsThicknessAndSettles) {
 
 TEST(LargeLoad, ThePocketClosesWhenTheFatIsTakenOut) {
   Case record(kCase);
-  simulation::SimulationSpec spec = make_plan(3e-6);
+  plan::SimulationSpec spec = make_plan(3e-6);
   spec.injections.push_back({"pocket", -4e-6, 1e-6, 3.0, std::nullopt});
   auto simulation = make_simulation(make_cheek(), spec);
   ASSERT_TRUE(simulation);

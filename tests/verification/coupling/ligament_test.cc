@@ -11,32 +11,32 @@ namespace {
 
 using geometry::ChartPoint;
 using geometry::ScalarField;
-using simulation::LigamentSpec;
+using plan::LigamentSpec;
 
 constexpr double kSide = 0.024;  // [m]
 constexpr double kArea = kSide * kSide;
 constexpr int kPoints = 4;  // of a ligament
 
 /// Plates that slide up and down between rollers, stiff enough not to bend.
-std::shared_ptr<const simulation::FaceModel> make_plates(const std::vector<std::string>& names) {
-  simulation::FaceModelSpec spec;
+std::shared_ptr<const model::FaceModel> make_plates(const std::vector<std::string>& names) {
+  model::FaceModelSpec spec;
   spec.region = geometry::SquareSpec{kSide, kSide};
   spec.n_xi = spec.n_eta = 8;
-  spec.rim.kind = simulation::SupportKind::kRollers;
+  spec.rim.kind = model::SupportKind::kRollers;
   for (const std::string& name : names) {
-    simulation::TissueLayerSpec layer;
+    model::TissueLayerSpec layer;
     layer.name = name;
     layer.geometry = {ScalarField::constant(4e-3), 1};
     layer.material = {1e9, 0.3, 1100.0};
     spec.layers.push_back(layer);
   }
-  auto model = simulation::build_face_model(spec, nullptr);
+  auto model = model::build_face_model(spec, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
   return *model;
 }
 
-simulation::FilmSpec make_film_below(const std::string& plate) {
-  simulation::FilmSpec film = make_film(simulation::FilmWallKind::kTissue, 4, 4);
+plan::FilmSpec make_film_below(const std::string& plate) {
+  plan::FilmSpec film = make_film(plan::FilmWallKind::kTissue, 4, 4);
   film.name = "film_" + plate;
   film.below_layer = plate;
   film.zones[0].name = "zone_" + plate;
@@ -55,8 +55,8 @@ LigamentSpec make_ligament(const std::string& name, const std::string& film, con
   return ligament;
 }
 
-simulation::SimulationSpec make_plan(const std::vector<std::string>& plates, double volume) {
-  simulation::SimulationSpec spec;
+plan::SimulationSpec make_plan(const std::vector<std::string>& plates, double volume) {
+  plan::SimulationSpec spec;
   for (const std::string& plate : plates) {
     spec.films.push_back(make_film_below(plate));
     spec.injections.push_back({"zone_" + plate, volume, volume, 0.0, std::nullopt});
@@ -70,7 +70,7 @@ simulation::SimulationSpec make_plan(const std::vector<std::string>& plates, dou
 }
 
 std::unique_ptr<simulation::Simulation> run_plan(const std::vector<std::string>& plates,
-                                                 const simulation::SimulationSpec& spec) {
+                                                 const plan::SimulationSpec& spec) {
   auto simulation = make_simulation(make_plates(plates), spec);
   if (simulation) run(*simulation);
   return simulation;
@@ -83,7 +83,7 @@ CaseInfo ligament_case() {
 
 TEST(Ligament, BalancesThePressureOnAPlate) {
   Case record(ligament_case());
-  simulation::SimulationSpec spec = make_plan({"plate"}, 0.3e-6);
+  plan::SimulationSpec spec = make_plan({"plate"}, 0.3e-6);
   spec.ligaments = {make_ligament("septum", "", "", 100.0)};
   const auto simulation = run_plan({"plate"}, spec);
   ASSERT_TRUE(simulation);
@@ -98,7 +98,7 @@ TEST(Ligament, BalancesThePressureOnAPlate) {
 
 TEST(Ligament, IsSlackAtFirst) {
   Case record(ligament_case());
-  simulation::SimulationSpec spec = make_plan({"plate"}, 0.3e-6);
+  plan::SimulationSpec spec = make_plan({"plate"}, 0.3e-6);
   spec.ligaments = {make_ligament("septum", "", "", 100.0)};
   spec.ligaments[0].slack = 0.2e-3;
   const auto simulation = run_plan({"plate"}, spec);
@@ -109,7 +109,7 @@ TEST(Ligament, IsSlackAtFirst) {
 
 TEST(Ligament, BreaksForGood) {
   Case record(ligament_case());
-  simulation::SimulationSpec spec = make_plan({"plate"}, 0.3e-6);
+  plan::SimulationSpec spec = make_plan({"plate"}, 0.3e-6);
   spec.ligaments = {make_ligament("septum", "", "", 100.0)};
   spec.ligaments[0].breaking_force = 100.0 * 0.3e-3;  // at an opening of 0.3 mm of 0.52
   auto simulation = make_simulation(make_plates({"plate"}), spec);
@@ -131,7 +131,7 @@ TEST(Ligament, BreaksForGood) {
 TEST(ConnectiveTissue, PullsInProportionToTheThickness) {
   Case record({"anatomy/2-connective-tissue", "Fibres that join the walls of a film",
                "a rigid plate on distributed springs: p = k h, with h = V/A"});
-  simulation::SimulationSpec spec = make_plan({"plate"}, 0.3e-6);
+  plan::SimulationSpec spec = make_plan({"plate"}, 0.3e-6);
   spec.films[0].connective_tissue.stiffness = 5e5;
   const auto simulation = run_plan({"plate"}, spec);
   ASSERT_TRUE(simulation);
@@ -142,7 +142,7 @@ TEST(TwoFilms, StandInSeries) {
   Case record({"anatomy/3-two-films", "Two films in series",
                "equilibrium of two rigid plates: springs across each film and one ligament across both"});
   const double volume = 0.2e-6;
-  simulation::SimulationSpec spec = make_plan({"upper", "lower"}, volume);
+  plan::SimulationSpec spec = make_plan({"upper", "lower"}, volume);
   spec.injections[1].volume = 2.0 * volume;
   spec.ligaments = {make_ligament("outer", "film_upper", "", 100.0), make_ligament("inner", "film_lower", "", 200.0),
                     make_ligament("through", "film_upper", "film_lower", 50.0)};

@@ -141,17 +141,17 @@ struct Blister {
 
 /// Radius over time, from where the square root of the lift, linear in r^2, reaches zero.
 Curve peel(const Blister& blister, const FrontLaw& law, double end, int steps) {
-  simulation::FaceModelSpec model_spec;
+  model::FaceModelSpec model_spec;
   model_spec.region = geometry::SquareSpec{blister.length_x, blister.length_y};
   model_spec.n_xi = 2 * blister.n_x;
   model_spec.n_eta = 2 * blister.n_y;
   model_spec.layers = {{"plate", {ScalarField::constant(kThickness), 1}, {kYoungsModulus, kNu, 1000.0}}};
-  model_spec.rim.kind = simulation::SupportKind::kRollers;
-  const auto model = simulation::build_face_model(model_spec, nullptr);
+  model_spec.rim.kind = model::SupportKind::kRollers;
+  const auto model = model::build_face_model(model_spec, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
-  simulation::SimulationSpec spec;
+  plan::SimulationSpec spec;
   spec.fat_viscosity = kViscosity;
-  spec.films = {make_film(simulation::FilmWallKind::kTissue, blister.n_x, blister.n_y)};
+  spec.films = {make_film(plan::FilmWallKind::kTissue, blister.n_x, blister.n_y)};
   spec.films[0].below_layer = "plate";
   spec.films[0].rest_thickness = ScalarField::constant(kPrewetted);
   const ChartPoint origin{0.5 / blister.n_x, 0.5 / blister.n_y};

@@ -12,7 +12,7 @@ namespace {
 
 using geometry::ChartPoint;
 using geometry::ScalarField;
-using simulation::FilmWallKind;
+using plan::FilmWallKind;
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kStiffness = 1e6;  // [Pa/m]
@@ -61,7 +61,7 @@ struct Profile {
 Profile spread(double start, double end, int cells_a_radius, double step) {
   const int n = cells_a_radius * 5 / 4;
   const double side = 1.25 * radius(end);
-  simulation::SimulationSpec spec;
+  plan::SimulationSpec spec;
   spec.fat_viscosity = kViscosity;
   spec.films = {make_film(FilmWallKind::kWinkler, n, n)};
   spec.films[0].wall_stiffness = kStiffness;

@@ -10,29 +10,29 @@
 namespace lipofill::verification {
 
 /// A flat region without tissue, for films with walls of their own.
-inline std::shared_ptr<const simulation::FaceModel> make_bare_square(double length_xi_m, double length_eta_m) {
-  simulation::FaceModelSpec spec;
+inline std::shared_ptr<const model::FaceModel> make_bare_square(double length_xi_m, double length_eta_m) {
+  model::FaceModelSpec spec;
   spec.region = geometry::SquareSpec{length_xi_m, length_eta_m};
   spec.n_xi = 2;
   spec.n_eta = 2;
-  auto model = simulation::build_face_model(spec, nullptr);
+  auto model = model::build_face_model(spec, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
   return model.ok() ? *model : nullptr;
 }
 
 /// A film over the whole square, in one zone.
-inline simulation::FilmSpec make_film(simulation::FilmWallKind wall, int n_xi, int n_eta) {
-  simulation::FilmSpec film;
+inline plan::FilmSpec make_film(plan::FilmWallKind wall, int n_xi, int n_eta) {
+  plan::FilmSpec film;
   film.name = "film";
   film.wall = wall;
   film.n_xi = n_xi;
   film.n_eta = n_eta;
-  film.zones = {{"all", simulation::ChartBox{}}};
+  film.zones = {{"all", geometry::ChartBox{}}};
   return film;
 }
 
-inline std::unique_ptr<simulation::Simulation> make_simulation(std::shared_ptr<const simulation::FaceModel> model,
-                                                               const simulation::SimulationSpec& spec) {
+inline std::unique_ptr<simulation::Simulation> make_simulation(std::shared_ptr<const model::FaceModel> model,
+                                                               const plan::SimulationSpec& spec) {
   auto created = simulation::Simulation::create(std::move(model), spec);
   EXPECT_TRUE(created.ok()) << created.status();
   return created.ok() ? *std::move(created) : nullptr;
@@ -48,11 +48,10 @@ struct Slot {
 };
 
 /// `spec` in a slot along which a steady flux [m2/s] runs from the first cell to the last for up to 10 s.
-inline std::unique_ptr<simulation::Simulation> make_slot(simulation::SimulationSpec spec, const Slot& slot,
-                                                         double flux) {
+inline std::unique_ptr<simulation::Simulation> make_slot(plan::SimulationSpec spec, const Slot& slot, double flux) {
   const double width = 4e-3;
   const auto centre = [&](int cell) { return geometry::ChartPoint{(cell + 0.5) / slot.n, 0.5}; };
-  spec.films = {make_film(simulation::FilmWallKind::kRigid, slot.n, 1)};
+  spec.films = {make_film(plan::FilmWallKind::kRigid, slot.n, 1)};
   spec.films[0].rest_thickness = slot.thickness;
   const double rate = flux * width;
   if (rate > 0.0) {

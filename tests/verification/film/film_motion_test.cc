@@ -158,11 +158,11 @@ TEST(PoiseuilleStartUp, AcrossTheGap) {
   const double gravity = 0.01;
   const auto start_up = [&](double step, Curve& curve) {
     const int n = 51;
-    simulation::SimulationSpec spec;
+    plan::SimulationSpec spec;
     spec.fat_density = 1000.0;
     spec.fat_viscosity = nu * spec.fat_density;
     spec.gravity = {gravity, 0.0, 0.0};
-    spec.films = {make_film(simulation::FilmWallKind::kWinkler, n, 1)};
+    spec.films = {make_film(plan::FilmWallKind::kWinkler, n, 1)};
     spec.films[0].wall_stiffness = 1.0;
     spec.films[0].rest_thickness = geometry::ScalarField::constant(h);
     spec.step = step;

@@ -14,8 +14,8 @@ using geometry::ChartPoint;
 using geometry::ScalarField;
 using simulation::Phase;
 
-simulation::TissueLayerSpec make_layer(const std::string& name, double thickness, double youngs_modulus) {
-  simulation::TissueLayerSpec layer;
+model::TissueLayerSpec make_layer(const std::string& name, double thickness, double youngs_modulus) {
+  model::TissueLayerSpec layer;
   layer.name = name;
   layer.geometry = {ScalarField::constant(thickness), 1};
   layer.material = {youngs_modulus, 0.45, 1100.0};
@@ -33,16 +33,16 @@ struct Front {
 Front peel(int n, double rest_thickness, double suction_limit) {
   const double length = 0.06;
   const double width = 1.5e-3;
-  simulation::FaceModelSpec model_spec;
+  model::FaceModelSpec model_spec;
   model_spec.region = geometry::SquareSpec{length, width};
   model_spec.n_xi = 2 * n;
   model_spec.n_eta = 2;
   model_spec.layers = {make_layer("plate", 2e-3, 1e5)};
-  model_spec.rim.kind = simulation::SupportKind::kRollers;
-  auto model = simulation::build_face_model(model_spec, nullptr);
+  model_spec.rim.kind = model::SupportKind::kRollers;
+  auto model = model::build_face_model(model_spec, nullptr);
   EXPECT_TRUE(model.ok()) << model.status();
-  simulation::SimulationSpec spec;
-  spec.films = {make_film(simulation::FilmWallKind::kTissue, n, 1)};
+  plan::SimulationSpec spec;
+  spec.films = {make_film(plan::FilmWallKind::kTissue, n, 1)};
   spec.films[0].below_layer = "plate";
   spec.films[0].rest_thickness = ScalarField::constant(rest_thickness);
   const double rate = 5e-6 * width;
@@ -113,19 +113,19 @@ TEST(PeelingFront, ConvergesAtAFixedSuctionLimit) {
 TEST(AnyFat, AnyThicknessAndAnyStepAreStable) {
   Case record({"fat/6-any-fat", "Viscosity 0.01 to 1000 Pa s, films of 0.02 to 10 mm, steps of 1 ms to 10 s",
                "volume to round-off, gap equal to film, positive thickness, no failure"});
-  simulation::FaceModelSpec model_spec;
+  model::FaceModelSpec model_spec;
   model_spec.region = geometry::SquareSpec{0.048, 0.048};
   model_spec.n_xi = model_spec.n_eta = 12;
   model_spec.layers = {make_layer("skin", 2e-3, 1e5), make_layer("muscle", 8e-3, 2e5)};
-  auto model = simulation::build_face_model(model_spec, nullptr);
+  auto model = model::build_face_model(model_spec, nullptr);
   ASSERT_TRUE(model.ok()) << model.status();
   double volume_error = 0.0, gap_error = 0.0;
   int runs = 0;
   for (const double thickness : {0.02e-3, 0.5e-3, 10e-3}) {
     for (const double viscosity : {0.01, 3.0, 1000.0}) {
       for (const double step : {1e-3, 0.1, 10.0}) {
-        simulation::SimulationSpec spec;
-        spec.films = {make_film(simulation::FilmWallKind::kTissue, 6, 6)};
+        plan::SimulationSpec spec;
+        spec.films = {make_film(plan::FilmWallKind::kTissue, 6, 6)};
         spec.films[0].below_layer = "skin";
         spec.films[0].rest_thickness = ScalarField::constant(thickness);
         spec.injections = {{"all", 0.3e-6, 1e-6, std::nullopt, ChartPoint{0.55, 0.45}}};

@@ -15,7 +15,7 @@ namespace {
 
 using geometry::ChartPoint;
 using geometry::ScalarField;
-using simulation::FilmWallKind;
+using plan::FilmWallKind;
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -84,7 +84,7 @@ TEST(PointSource, FrontGrowsWithTheSquareRootOfTime) {
   const double end = 16.0;
   const double side = 1.15 * exact.prefactor() * scale * std::sqrt(end);
   const int n = 48;
-  simulation::SimulationSpec spec;
+  plan::SimulationSpec spec;
   spec.fat_viscosity = viscosity;
   spec.films = {make_film(FilmWallKind::kWinkler, n, n)};
   spec.films[0].wall_stiffness = stiffness;

@@ -11,11 +11,11 @@ namespace {
 
 using geometry::ChartPoint;
 using geometry::ScalarField;
-using simulation::FilmWallKind;
+using plan::FilmWallKind;
 
 /// Pressure gradient along a slot of 1 mm when q [m2/s] flows through it [Pa/m].
-double measure_gradient(const simulation::SimulationSpec& fat, double q) {
-  simulation::SimulationSpec spec = fat;
+double measure_gradient(const plan::SimulationSpec& fat, double q) {
+  plan::SimulationSpec spec = fat;
   spec.step = 0.1;
   spec.end = 0.5;
   auto simulation = make_slot(spec, {}, q);
@@ -32,7 +32,7 @@ const char kSlotReference[] =
 // verification.md case 2: tau_y = 2 Pa on the slot of case 1 (mu = 10, G = 1e4 Pa/m) leaves 0.4320 of its flux.
 TEST(NonNewtonianSlot, BinghamFlux) {
   Case record({"film/2-bingham-and-power-law", "Bingham and power-law fat in a slot", kSlotReference});
-  simulation::SimulationSpec fat;
+  plan::SimulationSpec fat;
   fat.fat_viscosity = 10.0;
   fat.fat_yield_stress = 2.0;
   const double flux = 0.4320 * 8.333333333333333e-8;
@@ -43,7 +43,7 @@ TEST(NonNewtonianSlot, BinghamFlux) {
 // verification.md case 2: n = 0.5, K = 10 at G = 1e4 Pa/m: q = 3.125e-8 m2/s.
 TEST(NonNewtonianSlot, PowerLawFlux) {
   Case record({"film/2-bingham-and-power-law", "Bingham and power-law fat in a slot", kSlotReference});
-  simulation::SimulationSpec fat;
+  plan::SimulationSpec fat;
   fat.fat_viscosity = 10.0;
   fat.fat_flow_index = 0.5;
   record.record({"power-law gradient that drives 3.125e-8 m2/s", "Pa/m", 1e4, measure_gradient(fat, 3.125e-8), 1e-6});
@@ -52,7 +52,7 @@ TEST(NonNewtonianSlot, PowerLawFlux) {
 // Coleman fat as it is: n = 0.28, K = 48, tau_y = 7 Pa.
 TEST(NonNewtonianSlot, HerschelBulkleyFlux) {
   Case record({"film/2-bingham-and-power-law", "Bingham and power-law fat in a slot", kSlotReference});
-  simulation::SimulationSpec fat;
+  plan::SimulationSpec fat;
   fat.fat_viscosity = 48.0;
   fat.fat_flow_index = 0.28;
   fat.fat_yield_stress = 7.0;
@@ -67,8 +67,8 @@ TEST(NonNewtonianSlot, HerschelBulkleyFlux) {
 }
 
 /// A ridge of 2 mm across half of a channel of n cells on a Winkler wall, p = k h.
-simulation::SimulationSpec make_ridge(int n, double stiffness, double end) {
-  simulation::SimulationSpec spec;
+plan::SimulationSpec make_ridge(int n, double stiffness, double end) {
+  plan::SimulationSpec spec;
   spec.fat_viscosity = 10.0;
   spec.films = {make_film(FilmWallKind::kWinkler, n, 1)};
   spec.films[0].wall_stiffness = stiffness;
@@ -101,7 +101,7 @@ TEST(YieldStressDeposit, StopsWhereTheWallStressIsTheYieldStress) {
   const double front = std::pow(1.5 * volume_per_width / std::sqrt(fall), 2.0 / 3.0);
   ASSERT_LT(front, length);
   const int n = 64;
-  simulation::SimulationSpec spec = make_ridge(n, stiffness, 4000.0);
+  plan::SimulationSpec spec = make_ridge(n, stiffness, 4000.0);
   spec.fat_yield_stress = yield_stress;
   auto arrested = make_simulation(make_bare_square(length, 4e-3), spec);
   ASSERT_TRUE(arrested);
@@ -136,7 +136,7 @@ TEST(YieldStressDeposit, UnyieldedFatHoldsItsPressureGradient) {
                "wall stress h/2 |dp/dx| below tau_y: the flux is zero, whatever the time"});
   const int n = 24;
   const double length = 0.04;
-  simulation::SimulationSpec spec = make_ridge(n, 1e5, 2e4);
+  plan::SimulationSpec spec = make_ridge(n, 1e5, 2e4);
   ScalarField start{2, 1, {1.2e-3, 0.8e-3}};
   spec.films[0].initial_thickness = start;
   spec.fat_yield_stress = 1.0;  // wall stress of the slope: 1.2e-3/2 * 1e5 * 0.01 = 0.6 Pa at most
@@ -169,7 +169,7 @@ TEST(MaxwellFat, StressGrowsWithTheRelaxationTime) {
   std::vector<double> errors, steps;
   std::vector<double> time, measured, expected;
   for (const double step : {0.02, 0.01, 0.005}) {
-    simulation::SimulationSpec spec;
+    plan::SimulationSpec spec;
     spec.fat_viscosity = viscosity;
     spec.fat_shear_modulus = modulus;
     spec.step = step;
@@ -206,7 +206,7 @@ TEST(GravityInASlot, DrivesTheFluxOfItsWeight) {
   const double h = 2e-3;
   const double q = 920.0 * 9.81 * h * h * h / (12.0 * 15.0);
   const auto drop = [&](double flux) {
-    simulation::SimulationSpec spec;
+    plan::SimulationSpec spec;
     spec.gravity = {9.81, 0.0, 0.0};
     spec.step = 0.1;
     spec.end = 1.0;

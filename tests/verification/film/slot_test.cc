@@ -11,7 +11,7 @@ namespace {
 
 using geometry::ChartPoint;
 using geometry::ScalarField;
-using simulation::FilmWallKind;
+using plan::FilmWallKind;
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kViscosity = 10.0;
@@ -19,7 +19,7 @@ constexpr double kViscosity = 10.0;
 /// Two probes inside a strip of n cells with a steady flux q [m2/s] along it; returns the pressure drop between them
 /// [Pa].
 double measure_drop(double length, const ScalarField& thickness, double q, int n, int first, int last) {
-  simulation::SimulationSpec spec;
+  plan::SimulationSpec spec;
   spec.fat_viscosity = kViscosity;
   spec.step = 0.1;
   spec.end = 1.0;
@@ -91,7 +91,7 @@ TEST(Slot, RadialSourceBetweenRigidPlates) {
   const double boxed =
       12.0 * kViscosity * rate / 1e-9 * (potential_in_square(r1 / side) - potential_in_square(r2 / side));
   const auto measure = [&](int n) {
-    simulation::SimulationSpec spec;
+    plan::SimulationSpec spec;
     spec.fat_viscosity = kViscosity;
     spec.films = {make_film(FilmWallKind::kRigid, n, n)};
     spec.films[0].rest_thickness = ScalarField::constant(1e-3);

@@ -8,10 +8,10 @@
 namespace lipofill::verification {
 namespace {
 
+using geometry::ChartBox;
 using geometry::ChartPoint;
 using geometry::ScalarField;
-using simulation::ChartBox;
-using simulation::FilmWallKind;
+using plan::FilmWallKind;
 
 constexpr double kStiffness = 1e6;  // of the Winkler wall [Pa/m]
 
@@ -23,7 +23,7 @@ TEST(LeakyWall, LetsTwoChambersLevelAtItsRate) {
   const double length = 0.03;
   const double width = 0.01;
   const double leakage = 2e-9;  // [m2/(Pa s)]
-  simulation::SimulationSpec spec;
+  plan::SimulationSpec spec;
   spec.films = {make_film(FilmWallKind::kWinkler, 3, 1)};
   spec.films[0].wall_stiffness = kStiffness;
   spec.films[0].rest_thickness = ScalarField::constant(0.1e-3);
@@ -64,7 +64,7 @@ TEST(SealedWall, LeaksNothingAlongItsLength) {
   Case record(
       {"anatomy/5-sealed-wall", "A sealed wall through a zone", "no flux through it: the far half keeps its volume"});
   const auto far_side = [](double wall_end) {
-    simulation::SimulationSpec spec;
+    plan::SimulationSpec spec;
     spec.films = {make_film(FilmWallKind::kWinkler, 8, 8)};
     spec.films[0].wall_stiffness = kStiffness;
     spec.films[0].walls = {{"septum", {ChartPoint{0.5, 0.0}, ChartPoint{0.5, wall_end}}, {}, 0.0}};
@@ -96,7 +96,7 @@ TEST(EntryPressure, HoldsTheFrontUntilItIsReached) {
   const double entry = 2000.0;
   const double rate = 2e-8;
   const double cell_area = length * width / n;
-  simulation::SimulationSpec spec;
+  plan::SimulationSpec spec;
   spec.films = {make_film(FilmWallKind::kWinkler, n, 1)};
   spec.films[0].wall_stiffness = kStiffness;
   spec.films[0].rest_thickness = ScalarField::constant(1e-3);

@@ -1,0 +1,173 @@
+#include "core/model/face_model.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/field_violations.h"
+#include "core/base/hash.h"
+#include "core/model/face_model_check.h"
+#include "core/model/layer_thickness.h"
+
+namespace lipofill::model {
+namespace {
+
+constexpr double kPascalPerKilopascal = 1e3;
+/// Pa/m in a kPa/mm.
+constexpr double kStiffnessUnit = 1e6;
+/// Of the work of building, the part before the layers.
+constexpr double kSkinFraction = 0.9;
+
+void check_layer(const TissueLayerSpec& layer, const std::string& field, FieldViolations& violations) {
+  violations.check_range(absl::StrCat(field, ".youngs_modulus_kpa"),
+                         layer.material.youngs_modulus / kPascalPerKilopascal, 0.01, 1e6, "kPa");
+  violations.check_half_open(absl::StrCat(field, ".poisson_ratio"), layer.material.poisson_ratio, 0.0, 0.5, "");
+  violations.check_range(absl::StrCat(field, ".density_kg_m3"), layer.material.density, 1.0, 30000.0, "kg/m3");
+  violations.check_range(absl::StrCat(field, ".prestress_kpa"), layer.material.prestress / kPascalPerKilopascal, 0.0,
+                         1000.0, "kPa");
+}
+
+void check_support(const Support& support, const char* field, bool is_square, FieldViolations& violations) {
+  if (support.kind == SupportKind::kElastic) {
+    violations.check_range(absl::StrCat(field, ".stiffness_kpa_per_mm"), support.stiffness / kStiffnessUnit, 1e-9, 1e9,
+                           "kPa/mm");
+  }
+  if (support.kind == SupportKind::kRollers && !is_square) {
+    violations.add(absl::StrCat(field, ".kind"), "is ROLLERS, which needs a square: a scan's sides are not planes");
+  }
+}
+
+void add_matrix(Hasher& hasher, const Eigen::Matrix3Xd& matrix) {
+  hasher.add(static_cast<uint64_t>(matrix.cols()));
+  hasher.add_bytes(matrix.data(), static_cast<size_t>(matrix.size()) * sizeof(double));
+}
+
+/// At the end and only where there is one: a model without keeps the hash it had before layers had a prestress.
+void add_prestress(Hasher& hasher, const std::vector<TissueLayerSpec>& layers) {
+  const auto is_tense = [](const TissueLayerSpec& layer) { return layer.material.prestress != 0.0; };
+  if (std::none_of(layers.begin(), layers.end(), is_tense)) return;
+  hasher.add("prestress");
+  for (const TissueLayerSpec& layer : layers) hasher.add(layer.material.prestress);
+}
+
+std::string compute_content_hash(const FaceModel& model) {
+  Hasher hasher;
+  hasher.add("lipofill face model 1");
+  const geometry::LayeredGrid& grid = model.geometry.grid;
+  for (const int n : {grid.n_xi, grid.n_eta}) hasher.add(n);
+  hasher.add(grid.elements_through);
+  add_matrix(hasher, grid.nodes);
+  add_matrix(hasher, model.geometry.scan.points);
+  for (const auto& triangle : model.geometry.scan.triangles) hasher.add_bytes(triangle.data(), sizeof triangle);
+  for (const geometry::Rider& rider : model.geometry.riders) {
+    hasher.add(rider.vertex);
+    hasher.add(rider.place.xi);
+    hasher.add(rider.place.eta);
+  }
+  for (const auto& [name, position] : model.geometry.landmarks) {
+    hasher.add(name);
+    hasher.add_bytes(position.data(), 3 * sizeof(double));
+  }
+  for (const Eigen::Vector3d* axis :
+       {&model.geometry.axes.left, &model.geometry.axes.up, &model.geometry.axes.forward}) {
+    hasher.add_bytes(axis->data(), 3 * sizeof(double));
+  }
+  for (const TissueLayerSpec& layer : model.layers) {
+    hasher.add(layer.name);
+    hasher.add(layer.material.youngs_modulus);
+    hasher.add(layer.material.poisson_ratio);
+    hasher.add(layer.material.density);
+  }
+  for (const Support& support : {model.rim, model.base}) {
+    hasher.add(static_cast<int>(support.kind));
+    hasher.add(support.stiffness);
+  }
+  hasher.add(model.is_square);
+  add_prestress(hasher, model.layers);
+  return hasher.hex_digest();
+}
+
+geometry::FaceGeometrySpec make_geometry_spec(const FaceModelSpec& spec) {
+  geometry::FaceGeometrySpec geometry_spec;
+  geometry_spec.region = spec.region;
+  geometry_spec.n_xi = spec.n_xi;
+  geometry_spec.n_eta = spec.n_eta;
+  for (const TissueLayerSpec& layer : spec.layers) {
+    geometry_spec.layers.push_back(layer.geometry);
+    // Until the bone is measured: as thick as it can be.
+    if (layer.down_to_bone) {
+      geometry_spec.layers.back().thickness = geometry::ScalarField::constant(layer.down_to_bone->max_thickness);
+    }
+  }
+  return geometry_spec;
+}
+
+/// The charted skin, without the layers: their thickness depends on where they lie. Everything wrong with the layers is
+/// told before the scan is worked on.
+absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec, const geometry::Progress& progress) {
+  geometry::FaceGeometrySpec geometry_spec = make_geometry_spec(spec);
+  if (const absl::Status valid = geometry::check_face_geometry(geometry_spec); !valid.ok()) return valid;
+  geometry_spec.layers.clear();
+  return geometry::build_face_geometry(geometry_spec, [&progress](double fraction, const char* stage) {
+    return !progress || progress(kSkinFraction * fraction, stage);
+  });
+}
+
+/// Where the bone makes the layers fold, the caller can do more than with layers of a thickness of their own.
+absl::Status with_advice(const absl::Status& status, const LayerThickness& thickness) {
+  if (!absl::IsFailedPrecondition(status) || !thickness.bone) return status;
+  return absl::FailedPreconditionError(absl::StrCat(
+      status.message(), "; or raise smoothing_mm or lower max_thickness_mm of the layer down to the bone"));
+}
+
+}  // namespace
+
+absl::Status check_face_model(const FaceModelSpec& spec) {
+  const bool is_square = std::holds_alternative<geometry::SquareSpec>(spec.region);
+  FieldViolations violations;
+  if (spec.layers.empty() && !is_square) violations.add("layers", "are none, a scan needs at least 1");
+  std::set<std::string> names;
+  for (size_t l = 0; l < spec.layers.size(); ++l) {
+    const std::string field = absl::StrCat("layers[", l, "]");
+    const std::string& name = spec.layers[l].name;
+    if (name.empty()) violations.add(field + ".name", "is empty");
+    if (!names.insert(name).second) violations.add(field + ".name", absl::StrCat("is '", name, "' a second time"));
+    check_layer(spec.layers[l], field, violations);
+  }
+  check_thickness_requests(spec, violations);
+  check_support(spec.rim, "rim", is_square, violations);
+  check_support(spec.base, "base", is_square, violations);
+  return violations.to_status();
+}
+
+absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceModelSpec& spec,
+                                                                  const geometry::Progress& progress) {
+  auto model = std::make_shared<FaceModel>();
+  model->is_square = std::holds_alternative<geometry::SquareSpec>(spec.region);
+  if (const absl::Status status = check_face_model(spec); !status.ok()) return status;
+
+  auto face = build_skin(spec, progress);
+  if (!face.ok()) return face.status();
+  if (progress && !progress(kSkinFraction, "laying the layers")) return absl::CancelledError("building was cancelled");
+  auto thickness = find_layer_thickness(*face, spec);
+  if (!thickness.ok()) return thickness.status();
+  std::vector<geometry::LayerGeometry> layers;
+  for (size_t l = 0; l < spec.layers.size(); ++l) {
+    layers.push_back({thickness->fields[l], spec.layers[l].geometry.elements_through});
+  }
+  if (const absl::Status laid = geometry::lay_layers(layers, *face); !laid.ok()) return with_advice(laid, *thickness);
+
+  model->geometry = *std::move(face);
+  model->layers = spec.layers;
+  for (size_t l = 0; l < layers.size(); ++l) model->layers[l].geometry = std::move(layers[l]);
+  model->thickness = std::move(thickness->ranges);
+  model->bone = thickness->bone;
+  model->rim = spec.rim;
+  model->base = spec.base;
+  model->content_hash = compute_content_hash(*model);
+  if (progress && !progress(1.0, "done")) return absl::CancelledError("building was cancelled");
+  return std::shared_ptr<const FaceModel>(std::move(model));
+}
+
+}  // namespace lipofill::model

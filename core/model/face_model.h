@@ -1,0 +1,86 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/anatomy/tissue_presets.h"
+#include "core/geometry/face_geometry.h"
+#include "core/solid/material.h"
+
+namespace lipofill::model {
+
+enum class SupportKind { kClamped, kRollers, kFree, kElastic };
+
+/// How a side or the base of the tissue is held.
+struct Support {
+  SupportKind kind = SupportKind::kClamped;
+  double stiffness = 0.0;  ///< [Pa/m], kElastic only
+};
+
+/// A layer takes what the others leave of the distance from skin to bone.
+struct DownToBone {
+  double min_thickness = 1e-3;   ///< [m] less anywhere is an error
+  double max_thickness = 30e-3;  ///< [m] where bone lies deeper the layer ends here
+  double smoothing = 6e-3;       ///< [m] of the depth; 0: none
+};
+
+struct TissueLayerSpec {
+  std::string name;
+  geometry::LayerGeometry geometry;  ///< in a built model, the thickness it has
+  solid::ElasticMaterial material;
+  std::optional<anatomy::TissueKind> kind = std::nullopt;
+  bool regional_thickness = false;  ///< published figures of the kind in some regions, the thickness outside
+  std::optional<DownToBone> down_to_bone = std::nullopt;  ///< in place of the thickness
+};
+
+/// All that a model is made from; lipofill.v1.ModelSpec in SI.
+struct FaceModelSpec {
+  std::variant<geometry::SquareSpec, geometry::ScanRegionSpec> region;
+  int n_xi = 0;
+  int n_eta = 0;
+  std::vector<TissueLayerSpec> layers;
+  Support rim;
+  Support base;
+  std::optional<geometry::SurfaceMesh> bone;  ///< in the frame of the scan
+};
+
+/// Thickness of a layer over the nodes of the chart [m].
+struct ThicknessRange {
+  double min = 0.0;
+  double mean = 0.0;
+  double max = 0.0;
+};
+
+/// What was found of the bone; shares are of the nodes of the chart.
+struct BoneFinding {
+  double measured_share = 0.0;  ///< where a ray met bone
+  double limited_share = 0.0;   ///< where the layer ends above the bone, at its greatest thickness
+  ThicknessRange depth;         ///< from the skin
+};
+
+struct SharedParts;
+std::shared_ptr<SharedParts> make_shared_parts();
+
+/// A patient's layered face model. Immutable once built and shared between simulations.
+struct FaceModel {
+  geometry::FaceGeometry geometry;
+  std::vector<TissueLayerSpec> layers;
+  Support rim;
+  Support base;
+  std::vector<ThicknessRange> thickness;  ///< of each layer
+  std::optional<BoneFinding> bone;
+  bool is_square = false;
+  std::string content_hash;                                   ///< SHA-256 of everything a simulation depends on
+  std::shared_ptr<SharedParts> shared = make_shared_parts();  ///< of its simulations (shared_parts.h)
+};
+
+/// INVALID_ARGUMENT with field violations named as in lipofill.v1.ModelSpec, FAILED_PRECONDITION from the scan,
+/// CANCELLED. Deterministic: the same specification gives the same content hash.
+absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceModelSpec& spec,
+                                                                  const geometry::Progress& progress);
+
+}  // namespace lipofill::model

@@ -1,0 +1,160 @@
+#include "core/model/layer_thickness.h"
+
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/anatomy/regional_thickness.h"
+#include "core/geometry/bone_depth.h"
+
+namespace lipofill::model {
+namespace {
+
+constexpr double kThinnestMm = 0.2;
+constexpr double kThickestMm = 100.0;
+constexpr double kLongestSmoothingMm = 50.0;
+
+std::string field_of(size_t layer, const char* name) {
+  return absl::StrCat("layers[", layer, "].", name);
+}
+
+void check_regional(const TissueLayerSpec& layer, size_t index, bool is_square, bool under_bone_layer,
+                    FieldViolations& violations) {
+  if (!layer.regional_thickness) return;
+  const std::string field = field_of(index, "regional_thickness");
+  if (layer.down_to_bone) violations.add(field, "and down_to_bone exclude each other");
+  if (is_square) violations.add(field, "needs a scan_region with landmarks, the model is a square");
+  if (under_bone_layer) violations.add(field, "is asked for under the layer that goes down to the bone");
+  if (!layer.kind) {
+    violations.add(field_of(index, "kind"), absl::StrCat("is missing, and the name '", layer.name,
+                                                         "' tells none: regional_thickness goes by the kind"));
+  }
+}
+
+void check_down_to_bone(const TissueLayerSpec& layer, size_t index, bool is_square, bool has_bone,
+                        FieldViolations& violations) {
+  if (!layer.down_to_bone) return;
+  const std::string field = field_of(index, "down_to_bone");
+  const double min_mm = layer.down_to_bone->min_thickness * 1e3;
+  const double max_mm = layer.down_to_bone->max_thickness * 1e3;
+  violations.check_range(field + ".min_thickness_mm", min_mm, kThinnestMm, kThickestMm, "mm");
+  violations.check_range(field + ".max_thickness_mm", max_mm, min_mm, kThickestMm, "mm");
+  violations.check_range(field + ".smoothing_mm", layer.down_to_bone->smoothing * 1e3, 0.0, kLongestSmoothingMm, "mm");
+  if (is_square) violations.add(field, "needs a scan_region with a bone_scan, the model is a square");
+  if (!is_square && !has_bone) violations.add(field, "needs scan_region.bone_scan, which is missing");
+}
+
+Eigen::VectorXd sample(const geometry::ScalarField& field, const geometry::LayeredGrid& grid) {
+  Eigen::VectorXd values(grid.nodes_per_level());
+  for (int j = 0; j <= grid.n_eta; ++j) {
+    for (int i = 0; i <= grid.n_xi; ++i) {
+      values[grid.surface_index(i, j)] =
+          field.at(static_cast<double>(i) / grid.n_xi, static_cast<double>(j) / grid.n_eta);
+    }
+  }
+  return values;
+}
+
+geometry::ScalarField to_field(const Eigen::VectorXd& values, const geometry::LayeredGrid& grid) {
+  return {grid.n_xi + 1, grid.n_eta + 1, {values.begin(), values.end()}};
+}
+
+ThicknessRange range_of(const Eigen::VectorXd& values) {
+  return {values.minCoeff(), values.mean(), values.maxCoeff()};
+}
+
+/// What is left of `depth` under `others`, within bounds; notes how many nodes are limited.
+absl::StatusOr<Eigen::VectorXd> take_rest(const geometry::LayeredGrid& grid, const Eigen::VectorXd& depth,
+                                          const Eigen::VectorXd& others, size_t index, const DownToBone& bounds,
+                                          BoneFinding& finding) {
+  Eigen::VectorXd rest = depth - others;
+  Eigen::Index thinnest = 0;
+  if (rest.minCoeff(&thinnest) < bounds.min_thickness) {
+    const Eigen::Vector3d at = grid.nodes.col(thinnest) * 1e3;
+    const auto count = (rest.array() < bounds.min_thickness).count();
+    return field_violation(
+        field_of(index, "down_to_bone"),
+        absl::StrFormat(
+            "leaves %.2f mm near (%.1f, %.1f, %.1f) mm, where bone lies %.2f mm under the skin and the other "
+            "layers take %.2f mm; must be at least min_thickness_mm, %.2f mm (too thin at %.1f %% of the nodes)",
+            rest[thinnest] * 1e3, at.x(), at.y(), at.z(), depth[thinnest] * 1e3, others[thinnest] * 1e3,
+            bounds.min_thickness * 1e3, 100.0 * static_cast<double>(count) / static_cast<double>(rest.size())));
+  }
+  finding.limited_share =
+      static_cast<double>((rest.array() > bounds.max_thickness).count()) / static_cast<double>(rest.size());
+  rest = rest.cwiseMin(bounds.max_thickness);
+  return rest;
+}
+
+/// Gives the layer at `index` what the others leave of the distance to the bone.
+absl::Status go_down_to_bone(const geometry::LayeredGrid& grid, const FaceModelSpec& spec, size_t index,
+                             std::vector<Eigen::VectorXd>& thickness, LayerThickness& result) {
+  const auto measured = geometry::measure_bone_depth(grid, *spec.bone, spec.layers[index].down_to_bone->smoothing);
+  if (!measured.ok()) return measured.status();
+  Eigen::VectorXd others = Eigen::VectorXd::Zero(grid.nodes_per_level());
+  for (size_t l = 0; l < thickness.size(); ++l) {
+    if (l != index) others += thickness[l];
+  }
+  BoneFinding finding;
+  finding.measured_share = measured->measured_share;
+  finding.depth = range_of(measured->depth);
+  auto rest = take_rest(grid, measured->depth, others, index, *spec.layers[index].down_to_bone, finding);
+  if (!rest.ok()) return rest.status();
+  thickness[index] = *std::move(rest);
+  result.fields[index] = to_field(thickness[index], grid);
+  result.bone = finding;
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void check_thickness_requests(const FaceModelSpec& spec, FieldViolations& violations) {
+  const bool is_square = std::holds_alternative<geometry::SquareSpec>(spec.region);
+  bool has_bone_layer = false;
+  for (size_t l = 0; l < spec.layers.size(); ++l) {
+    const TissueLayerSpec& layer = spec.layers[l];
+    check_regional(layer, l, is_square, has_bone_layer, violations);
+    check_down_to_bone(layer, l, is_square, spec.bone.has_value(), violations);
+    if (layer.down_to_bone && has_bone_layer) {
+      violations.add(field_of(l, "down_to_bone"), "is asked for by a second layer, one can take what the others leave");
+    }
+    has_bone_layer = has_bone_layer || layer.down_to_bone.has_value();
+  }
+  if (spec.bone && !has_bone_layer) {
+    violations.add("scan_region.bone_scan", "is given, but no layer has down_to_bone");
+  }
+}
+
+absl::StatusOr<LayerThickness> find_layer_thickness(const geometry::FaceGeometry& face, const FaceModelSpec& spec) {
+  const geometry::LayeredGrid& grid = face.grid;
+  LayerThickness result;
+  std::vector<Eigen::VectorXd> thickness;
+  std::optional<size_t> bone_layer;
+  Eigen::VectorXd above = Eigen::VectorXd::Zero(grid.nodes_per_level());
+  for (size_t l = 0; l < spec.layers.size(); ++l) {
+    const TissueLayerSpec& layer = spec.layers[l];
+    result.fields.push_back(layer.geometry.thickness);
+    thickness.push_back(sample(layer.geometry.thickness, grid));
+    if (layer.down_to_bone) bone_layer = l;
+    if (layer.regional_thickness) {
+      auto regional = anatomy::compute_regional_thickness(face, *layer.kind, above, thickness[l]);
+      if (!regional.ok()) {
+        FieldViolations violations;
+        violations.absorb(field_of(l, "regional_thickness"), regional.status());
+        return violations.to_status();
+      }
+      thickness[l] = *std::move(regional);
+      result.fields[l] = to_field(thickness[l], grid);
+    }
+    above += thickness[l];
+  }
+  if (bone_layer) {
+    const absl::Status done = go_down_to_bone(grid, spec, *bone_layer, thickness, result);
+    if (!done.ok()) return done;
+  }
+  for (const Eigen::VectorXd& values : thickness) result.ranges.push_back(range_of(values));
+  return result;
+}
+
+}  // namespace lipofill::model

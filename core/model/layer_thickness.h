@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/base/field_violations.h"
+#include "core/geometry/scalar_field.h"
+#include "core/model/face_model.h"
+
+namespace lipofill::model {
+
+/// Adds what is wrong with how the layers ask for their thickness, before anything is built.
+void check_thickness_requests(const FaceModelSpec& spec, FieldViolations& violations);
+
+/// Thickness of all layers over the chart of a face.
+struct LayerThickness {
+  std::vector<geometry::ScalarField> fields;  ///< [m] a field a layer
+  std::vector<ThicknessRange> ranges;
+  std::optional<BoneFinding> bone;
+};
+
+/// Thickness of a specification's layers under a charted skin: the layer's own field, the regional figures of its kind,
+/// or what the other layers leave of the distance to the bone. Layers that ask for neither keep their field as it is.
+/// INVALID_ARGUMENT with violations of layers[k].regional_thickness and layers[k].down_to_bone that say where it does
+/// not fit; FAILED_PRECONDITION where no bone is found. Checked by tests/unit/model/layer_thickness_test.cc.
+absl::StatusOr<LayerThickness> find_layer_thickness(const geometry::FaceGeometry& face, const FaceModelSpec& spec);
+
+}  // namespace lipofill::model

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/shared_cache.h"
+#include "core/coupling/factor_analysis.h"
+#include "core/coupling/gap_geometry.h"
+#include "core/film/film_grid.h"
+#include "core/geometry/layered_grid.h"
+#include "core/solid/tissue_structure.h"
+
+namespace lipofill::model {
+
+/// What simulations of a model share as long as one of them lives: element matrices and patterns, where gaps lie on the
+/// tissue, the analysis of the factorisation. None of it is written once it is made, and it is the same whoever makes
+/// it first: results do not depend on the sharing. Thread-safe. Checked by tests/unit/model/shared_parts_test.cc.
+struct SharedParts {
+  SharedCache<solid::TissueStructure> tissues;
+  SharedCache<coupling::GapGeometry> gaps;
+  SharedCache<coupling::FactorAnalysis> analyses;
+};
+
+/// Keys over all that a part is made from.
+std::string key_of_tissue(const solid::HexMesh& mesh, const std::vector<solid::ElasticMaterial>& materials,
+                          const solid::NodeSupports& supports, const std::vector<solid::WallSpring>& springs);
+std::string key_of_gap(const std::string& tissue_key, const geometry::LayeredGrid& grid,
+                       const coupling::WallNodes& walls, const film::FilmGrid& film);
+/// @param has_pressures  the pressures are in the factorisation
+std::string key_of_analysis(const std::string& tissue_key, const std::vector<std::string>& gap_keys,
+                            bool has_pressures);
+
+}  // namespace lipofill::model

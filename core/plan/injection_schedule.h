@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "absl/functional/function_ref.h"
+#include "absl/status/statusor.h"
+#include "core/model/face_model.h"
+#include "core/plan/film_layout.h"
+#include "core/plan/simulation_spec.h"
+
+namespace lipofill::plan {
+
+/// Which cells are fed with how much when.
+class InjectionSchedule {
+ public:
+  /// Field violations are named as in lipofill.v1.Injection. Without a start it begins at `now` or when the last one
+  /// ends.
+  absl::Status add(const model::FaceModel& model, const std::vector<FilmLayout>& films, const InjectionSpec& spec,
+                   double now);
+
+  /// Volume that each cell of each film receives between `time` and `time + dt`, and notes it as delivered [m3]. No
+  /// more is taken out of a cell than nearly all that it holds; the rest stays due. Rigid walls keep their film full.
+  /// @param held  volume of fat in a cell of a film now [m3]
+  void deliver(const std::vector<FilmLayout>& films, absl::FunctionRef<double(int film, int cell)> held, double time,
+               double dt, std::vector<Eigen::VectorXd>& received);
+
+  /// What is due by `time` and not delivered: more was to be taken out than was there [m3], negative or 0.
+  double undelivered(double time) const;
+
+  /// Sum of all that has been delivered [m3].
+  double delivered() const { return delivered_; }
+  /// When the last injection ends [s].
+  double end() const { return end_; }
+
+  /// The first start or end of an injection after `time` [s]; infinity when there is none.
+  double next_change(double time) const;
+
+  /// Mutable part, for snapshots: what each injection has delivered.
+  std::vector<double> delivered_each() const;
+  void get_delivered(std::vector<double>& each) const;
+  void restore_delivered(const std::vector<double>& each, double total);
+
+ private:
+  struct Injection {
+    int film = 0;
+    std::vector<int> cells;
+    std::vector<double> shares;                                     ///< sum 1
+    double volume = 0.0;                                            ///< [m3]
+    double rate = 0.0;                                              ///< [m3/s] > 0
+    double start = 0.0;                                             ///< [s]
+    double delivered = 0.0;                                         ///< [m3]
+    double end() const { return start + std::abs(volume) / rate; }  ///< [s]
+  };
+  /// Volume that should have been delivered by `time` [m3].
+  static double due(const Injection& injection, double time);
+
+  std::vector<Injection> injections_;
+  double delivered_ = 0.0;
+  double end_ = 0.0;
+};
+
+}  // namespace lipofill::plan

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "absl/status/status.h"
+#include "core/plan/simulation_spec.h"
+
+namespace lipofill::plan {
+
+/// Ranges of everything in a specification that needs no model to be judged: fat, time, damping, gravity, numbers of
+/// films, names. Field violations are named as in lipofill.v1.SimulationSpec, values in the units of those names.
+absl::Status check_plan(const SimulationSpec& spec);
+
+/// RESOURCE_EXHAUSTED naming the bound when the plan cannot take one more injection.
+absl::Status check_room_for_injection(const SimulationSpec& spec);
+
+}  // namespace lipofill::plan

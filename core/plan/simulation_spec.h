@@ -1,0 +1,126 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/geometry/chart_box.h"
+#include "core/geometry/face_geometry.h"
+
+namespace lipofill::plan {
+
+enum class CouplingMode { kExact, kLumped };
+enum class WallFriction { kNoSlip, kNone };
+/// What a simulation is for: to watch, or for the shape in the end, in as few steps as that takes.
+enum class TimeGoal { kTransient, kSettledShape };
+enum class FilmWallKind { kTissue, kRigid, kWinkler };
+
+using geometry::ChartBox;
+
+struct Disc {
+  geometry::SkinPoint centre;
+  double radius = 0.0;  ///< [m] straight distance from the centre
+};
+
+struct NamedRegion {
+  std::string name;
+};
+
+/// Where a field over the chart, 1 inside and 0 outside, is at least a half.
+struct PaintedRegion {
+  geometry::ScalarField cover;
+};
+
+struct ZoneSpec {
+  std::string name;
+  std::variant<ChartBox, Disc, NamedRegion, PaintedRegion> shape;
+};
+
+/// A wall of a film: a line through its zones, or where two of its zones touch.
+struct WallSpec {
+  std::string name;
+  std::vector<geometry::SkinPoint> path;  ///< at least two points; empty: `between`
+  std::array<std::string, 2> between;     ///< names of two zones
+  double leakage = 0.0;                   ///< flux per length and pressure difference [m2/(Pa s)]; 0: tight
+};
+
+/// Fibres that hold the walls of a film together.
+struct ConnectiveTissueSpec {
+  double stiffness = 0.0;       ///< of the fibres, per area [Pa/m]; 0: none
+  double entry_pressure = 0.0;  ///< of the fat beside a cell that it has not entered, above which it does [Pa]; 0: open
+};
+
+struct FilmSpec {
+  std::string name;
+  std::string below_layer;
+  ChartBox extent;
+  int n_xi = 0;
+  int n_eta = 0;
+  std::vector<ZoneSpec> zones;
+  geometry::ScalarField rest_thickness = geometry::ScalarField::constant(0.05e-3);  ///< [m]
+  std::optional<geometry::ScalarField> initial_thickness;                           ///< [m]
+  WallFriction wall_friction = WallFriction::kNoSlip;
+  FilmWallKind wall = FilmWallKind::kTissue;
+  double wall_stiffness = 0.0;  ///< [Pa/m], kWinkler only
+  std::vector<WallSpec> walls;
+  ConnectiveTissueSpec connective_tissue;
+};
+
+struct NamedLigament {
+  std::string name;
+};
+
+/// Springs between the outer wall of one film and the inner wall of another, or of the same.
+struct LigamentSpec {
+  std::string name;
+  std::string film;        ///< the outermost film it crosses; empty: the first on tissue
+  std::string inner_film;  ///< the innermost; empty: the same
+  std::variant<std::vector<geometry::SkinPoint>, NamedLigament> place;
+  std::optional<double> stiffness;       ///< of each point [N/m]; a named ligament has its own
+  double slack = 0.0;                    ///< [m]
+  std::optional<double> breaking_force;  ///< of each point [N]; none: it holds
+};
+
+struct InjectionSpec {
+  std::string zone;
+  double volume = 0.0;          ///< [m3], negative: taken out
+  double rate = 0.0;            ///< [m3/s] > 0
+  std::optional<double> start;  ///< [s]
+  std::optional<geometry::SkinPoint> site;
+};
+
+struct ProbeSpec {
+  std::string name;
+  std::string film;
+  geometry::SkinPoint place;
+};
+
+/// All that a simulation is made from besides its model; lipofill.v1.SimulationSpec in SI.
+struct SimulationSpec {
+  double fat_viscosity = 15.0;              ///< [Pa s]
+  double fat_density = 920.0;               ///< [kg/m3]
+  double fat_flow_index = 1.0;              ///< n; then fat_viscosity is the consistency [Pa s^n]
+  double fat_yield_stress = 0.0;            ///< [Pa]
+  std::optional<double> fat_shear_modulus;  ///< of a Maxwell element [Pa]
+  std::optional<double> suction_limit;      ///< a void opens in the film below minus this pressure [Pa]
+  std::vector<FilmSpec> films;
+  std::vector<InjectionSpec> injections;
+  TimeGoal goal = TimeGoal::kTransient;
+  double step = 0.010;                       ///< [s]
+  std::optional<double> max_step;            ///< after the last injection [s]; none: `step`
+  std::optional<double> max_injection_step;  ///< until then [s]; none: `step`
+  double end = 60.0;                         ///< [s]
+  double settle_skin_speed = 0.02e-3;        ///< [m/s], 0: never
+  CouplingMode coupling = CouplingMode::kExact;
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s2]
+  double damping_mass = 0.0;                          ///< alpha [1/s]
+  double damping_stiffness = 0.0;                     ///< beta [s]
+  std::vector<ProbeSpec> probes;
+  std::vector<LigamentSpec> ligaments;
+  double error_tolerance = 0.02e-3;  ///< of a step longer than `step`, on skin and thickness [m]
+};
+
+}  // namespace lipofill::plan

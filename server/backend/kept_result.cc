@@ -1,0 +1,61 @@
+#include "server/backend/kept_result.h"
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "core/base/hash.h"
+#include "server/store/sqlite_store.h"
+
+namespace lipofill::server {
+namespace {
+
+/// By content: a simulation of the same name may have been deleted and run anew.
+std::string make_key(const SimulationResult& result, const Selection& selection) {
+  Hasher hasher;
+  for (const std::string& message : {result.meshes_message, result.frame_message}) {
+    hasher.add(message.size());
+    hasher.add(message);
+  }
+  return absl::StrCat(hasher.hex_digest(), "\n", absl::StrJoin(selection.meshes, "\n"), "\n\n",
+                      absl::StrJoin(selection.fields, "\n"), selection.quantised ? "\n\nuint16" : "");
+}
+
+/// What was asked for, with every name checked against what there is.
+absl::StatusOr<Selection> choose(const v1::MeshSlice& meshes, const v1::FrameSlice& frame,
+                                 const ViewerOptions& options) {
+  Topology known;
+  for (const std::string& name : mesh_names(meshes)) known.meshes.push_back({name, {}, {}, 3});
+  Viewer viewer(options, [] {});
+  if (const absl::Status chosen = viewer.choose_meshes(known); !chosen.ok()) return chosen;
+  std::vector<std::string> fields;
+  for (const v1::ArraySlice& field : frame.fields()) fields.push_back(field.name());
+  if (const absl::Status checked = viewer.check_fields(fields); !checked.ok()) return checked;
+  return viewer.selection();
+}
+
+absl::StatusOr<std::shared_ptr<const KeptMessages>> encode(const SimulationResult& result,
+                                                           const std::string& simulation,
+                                                           const ViewerOptions& options) {
+  v1::MeshSlice meshes;
+  v1::FrameSlice frame;
+  if (!meshes.ParseFromString(result.meshes_message) || !frame.ParseFromString(result.frame_message)) {
+    return absl::DataLossError(absl::StrCat("the result of ", simulation_name(simulation), " cannot be read"));
+  }
+  const auto selection = choose(meshes, frame, options);
+  if (!selection.ok()) return selection.status();
+  keep_meshes(selection->meshes, *meshes.mutable_arrays());
+  keep_selection(*selection, frame);
+  meshes.set_topology_hash(compute_topology_hash(meshes));
+  frame.set_topology_hash(meshes.topology_hash());
+  return std::make_shared<const KeptMessages>(KeptMessages{encode_meshes(meshes), encode_frame(frame)});
+}
+
+}  // namespace
+
+absl::StatusOr<std::shared_ptr<const KeptMessages>> KeptResults::show(const std::string& simulation,
+                                                                      const ViewerOptions& options) {
+  const auto result = store_.get_result(simulation);
+  if (!result.ok()) return result.status();
+  return shown_.get(make_key(*result, options.selection), [&] { return encode(*result, simulation, options); });
+}
+
+}  // namespace lipofill::server

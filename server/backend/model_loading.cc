@@ -1,0 +1,39 @@
+#include "absl/strings/str_cat.h"
+#include "core/geometry/surface_reader.h"
+#include "server/backend/backend.h"
+#include "server/backend/scan_reading.h"
+#include "server/patients/model_building.h"
+#include "server/wire/names.h"
+
+namespace lipofill::server {
+namespace {
+
+absl::StatusOr<ModelCache::Model> rebuild(Backend& backend, const std::string& name) {
+  const auto ids = parse_model_name(name, "model");
+  if (!ids.ok()) return ids.status();
+  const auto record = backend.store.get_model(ids->patient, ids->id);
+  if (!record.ok()) return record.status();
+  v1::ModelSpec message;
+  if (!message.ParseFromString(record->spec_message)) {
+    return absl::DataLossError(absl::StrCat("the specification of ", name, " cannot be read"));
+  }
+  auto spec = read_model_spec(backend, ids->patient, message);
+  if (!spec.ok()) return spec.status();
+  auto model = model::build_face_model(*spec, [](double, const char*) { return true; });
+  if (!model.ok()) {
+    return absl::DataLossError(absl::StrCat(name, " cannot be built again: ", std::string(model.status().message())));
+  }
+  if ((*model)->content_hash != record->content_hash) {
+    return absl::DataLossError(absl::StrCat(name, " was ", record->content_hash, ", built again it is ",
+                                            (*model)->content_hash, ": its scan or the program has changed"));
+  }
+  return *std::move(model);
+}
+
+}  // namespace
+
+absl::StatusOr<ModelCache::Model> Backend::load_model(const std::string& name) {
+  return models.get(name, [this, &name] { return rebuild(*this, name); });
+}
+
+}  // namespace lipofill::server

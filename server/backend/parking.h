@@ -1,0 +1,40 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "server/backend/backend.h"
+
+namespace lipofill::server {
+
+/// Whether a simulation was parked: READY or PAUSED, kept on disk alone. Its summary is in the record then.
+bool is_parked(const SimulationRecord& record);
+
+/// The session of a simulation, held; one that was parked is woken for it, which takes as long as building its model
+/// does. Null for one that has ended or could not be brought back. NOT_FOUND, RESOURCE_EXHAUSTED when there is no room
+/// for it now. Checked by tests/integration/service/parking_test.cc.
+absl::StatusOr<std::shared_ptr<Session>> find_or_wake(Backend& backend, const std::string& id);
+
+/// Parks simulations that are READY or PAUSED, are not watched, and of which nothing was asked for a time. Looking at
+/// their figures does not count.
+class ParkingAttendant {
+ public:
+  /// `idle` 0: none is ever parked.
+  ParkingAttendant(Backend& backend, std::chrono::duration<double> idle);
+  ~ParkingAttendant();
+
+ private:
+  void look_round();
+
+  Backend& backend_;
+  const std::chrono::duration<double> idle_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::jthread thread_;
+};
+
+}  // namespace lipofill::server

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "core/geometry/surface_reader.h"
+#include "server/backend/backend.h"
+#include "server/store/records.h"
+
+namespace lipofill::server {
+
+/// The surface of a scan's bytes, in metres. Errors as those of geometry::read_surface.
+absl::StatusOr<geometry::SurfaceMesh> parse_scan(const ScanRecord& scan, std::string_view bytes);
+
+/// The surface of a scan in the store. FAILED_PRECONDITION while it is not complete.
+absl::StatusOr<geometry::SurfaceMesh> read_scan_surface(Backend& backend, const std::string& patient,
+                                                        const std::string& scan);
+
+}  // namespace lipofill::server

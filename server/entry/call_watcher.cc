@@ -1,0 +1,108 @@
+#include "server/entry/call_watcher.h"
+
+#include <grpcpp/support/byte_buffer.h>
+
+#include <chrono>
+
+#include "absl/strings/match.h"
+#include "server/entry/method_rules.h"
+#include "spdlog/spdlog.h"
+
+namespace lipofill::server {
+namespace {
+
+using grpc::experimental::InterceptionHookPoints;
+using grpc::experimental::InterceptorBatchMethods;
+using Clock = std::chrono::steady_clock;
+
+/// Names of methods that there are not come from clients: no place for them in metrics and logs.
+std::string name_of(const std::string& method) {
+  return has_rule(method) ? method : "unknown";
+}
+
+/// One call, from its metadata to its status. gRPC owns it as long as the call's context.
+class CallWatcher : public grpc::experimental::Interceptor {
+ public:
+  CallWatcher(grpc::experimental::ServerRpcInfo& info, Metrics& metrics, CallGate& gate)
+      : method_(name_of(info.method())),
+        context_(*info.server_context()),
+        call_(shared_call(context_)),
+        metrics_(metrics),
+        counts_(metrics.of_method(method_)),
+        gate_(gate) {
+    call_->method = method_;
+    counts_.started.Increment();
+    counts_.in_flight.Increment();
+  }
+
+  ~CallWatcher() override {
+    if (!ended_) end(absl::StatusCode::kCancelled);
+  }
+
+  void Intercept(InterceptorBatchMethods* batch) override {
+    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::POST_RECV_INITIAL_METADATA)) {
+      begin(*batch->GetRecvInitialMetadata());
+    }
+    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_INITIAL_METADATA)) {
+      batch->GetSendInitialMetadata()->emplace("x-request-id", call_->request_id);
+    }
+    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_MESSAGE)) {
+      const grpc::ByteBuffer* message = batch->GetSerializedSendMessage();
+      if (message != nullptr) note_sent(*message);
+    }
+    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS)) {
+      end(static_cast<absl::StatusCode>(batch->GetSendStatus().error_code()));
+    }
+    batch->Proceed();
+  }
+
+ private:
+  static std::shared_ptr<Call> shared_call(grpc::ServerContextBase& context) {
+    const auto* ours = dynamic_cast<CallContext*>(&context);
+    return ours != nullptr ? ours->call : std::make_shared<Call>();
+  }
+
+  void begin(const Metadata& metadata) {
+    *call_ = read_call(method_, metadata);
+    call_->gate = &gate_;
+    call_->refusal = gate_.admit(*call_, metadata, context_);
+  }
+
+  void note_sent(const grpc::ByteBuffer& message) {
+    counts_.sent_bytes.Increment(static_cast<double>(message.Length()));
+    gate_.note_answer(*call_, message);
+  }
+
+  void end(absl::StatusCode code) {
+    ended_ = true;
+    const double seconds = std::chrono::duration<double>(Clock::now() - began_).count();
+    const std::string code_name = absl::StatusCodeToString(code);
+    counts_.in_flight.Decrement();
+    counts_.seconds.Observe(seconds);
+    metrics_.count_handled(method_, code_name);
+    LogFields fields = {{"method", method_}, {"code", code_name}, {"duration_ms", seconds * 1e3}};
+    const LogFields of_call = call_->log_fields();
+    fields.insert(fields.end(), of_call.begin(), of_call.end());
+    const LogScope scope(std::move(fields));
+    // Those who ask for health ask often.
+    spdlog::log(absl::StartsWith(method_, "/grpc.") ? spdlog::level::debug : spdlog::level::info, "call");
+    gate_.note_end(*call_, code_name);
+  }
+
+  const std::string method_;
+  grpc::ServerContextBase& context_;
+  const std::shared_ptr<Call> call_;
+  Metrics& metrics_;
+  const MethodMetrics counts_;
+  CallGate& gate_;
+  const Clock::time_point began_ = Clock::now();
+  bool ended_ = false;
+};
+
+}  // namespace
+
+grpc::experimental::Interceptor* CallWatchers::CreateServerInterceptor(grpc::experimental::ServerRpcInfo* info) {
+  return new CallWatcher(*info, metrics_, gate_);
+}
+
+}  // namespace lipofill::server

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "server/backend/kept_result.h"
+#include "server/frames/courier.h"
+#include "server/ops/metrics.h"
+#include "server/sessions/viewer.h"
+#include "server/wire/frame_encoding.h"
+
+namespace lipofill::server {
+
+/// The server's side of one Watch: takes what its viewer holds and writes it, one message at a time, as fast as the
+/// client reads. Messages share their bytes with those of other viewers.
+///
+/// It keeps itself alive from begin() until gRPC is done with it.
+class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
+                    public Courier::Stream,
+                    public std::enable_shared_from_this<WatchStream> {
+ public:
+  /// `place` is let go of when gRPC is done with the stream.
+  WatchStream(Courier& courier, Metrics& metrics, std::string known_topology_hash,
+              std::shared_ptr<void> place = nullptr)
+      : courier_(courier),
+        metrics_(metrics),
+        known_topology_hash_(std::move(known_topology_hash)),
+        place_(std::move(place)) {}
+
+  /// Before it begins: it ends with UNAUTHENTICATED at this time.
+  void end_at(Courier::Clock::time_point time) { expires_ = time; }
+
+  /// A stream that shows what a session puts into the viewer, and a heartbeat where that was nothing for so long.
+  /// `on_done` is called once, at the end. False, and nothing is shown, when the client left while it was held.
+  [[nodiscard]] bool begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat,
+                           std::function<void()> on_done);
+  /// Keeps it, for a begin that comes later from another thread.
+  void hold();
+  /// The client has left, or the stream has ended otherwise: a begin would show nothing.
+  bool has_ended();
+  /// A stream of messages that are all there.
+  void begin_kept(const std::shared_ptr<const KeptMessages>& kept);
+  /// A stream that ends at once.
+  void begin_failed(const absl::Status& status);
+  /// For the viewer: there is something to take. Never blocks.
+  void wake();
+
+  void deliver() override;
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override;
+  void OnDone() override;
+
+ private:
+  void advance(std::unique_lock<std::mutex> lock);
+  void fetch();
+  void queue_meshes(const std::shared_ptr<const EncodedMessages>& meshes);
+  void queue_frame(const std::shared_ptr<const EncodedMessages>& frame, uint64_t skipped);
+  void queue_due_heartbeat();
+
+  Courier& courier_;
+  Metrics& metrics_;
+  const std::string known_topology_hash_;
+  std::shared_ptr<void> place_;
+  std::shared_ptr<WatchStream> self_;
+  std::function<void()> on_done_;
+  std::atomic<bool> woken_ = false;
+
+  std::mutex mutex_;
+  std::shared_ptr<Viewer> viewer_;
+  Courier::Clock::duration heartbeat_{};
+  Courier::Clock::time_point last_sent_{};
+  Courier::Clock::time_point expires_ = Courier::Clock::time_point::max();
+  std::optional<Courier::Clock::time_point> alarm_;  ///< when it is woken to send a heartbeat
+  uint64_t sent_epoch_ = 0;
+  uint64_t sent_sequence_ = 0;
+  std::string topology_hash_;
+  std::deque<grpc::ByteBuffer> outgoing_;
+  grpc::ByteBuffer at_hand_;
+  bool writing_ = false;
+  bool cancelled_ = false;
+  bool finished_ = false;
+  std::optional<absl::Status> end_;
+};
+
+}  // namespace lipofill::server

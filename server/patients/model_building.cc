@@ -1,0 +1,227 @@
+#include "server/patients/model_building.h"
+
+#include "absl/strings/str_cat.h"
+#include "core/base/field_violations.h"
+#include "core/model/face_model_check.h"
+#include "server/backend/scan_reading.h"
+#include "server/entry/unary.h"
+#include "server/sessions/identifiers.h"
+#include "server/sessions/shortage.h"
+#include "server/store/sqlite_store.h"
+#include "server/wire/model_conversion.h"
+#include "server/wire/names.h"
+#include "server/wire/report_conversion.h"
+#include "server/wire/request_key.h"
+#include "server/wire/timestamps.h"
+#include "server/wire/tissue_figures.h"
+#include "server/wire/violation_prefix.h"
+#include "spdlog/spdlog.h"
+
+namespace lipofill::server {
+namespace {
+
+/// Reading the scan is the first part of the work.
+constexpr double kScanFraction = 0.05;
+
+/// The scans a specification names: ids, empty where it names none.
+struct ScanIds {
+  std::string skin;
+  std::string bone;
+};
+
+absl::StatusOr<std::string> scan_of(const std::string& patient, const std::string& name, const std::string& field) {
+  const auto scan = parse_scan_name(name, field);
+  if (!scan.ok()) return scan.status();
+  if (scan->patient != patient) {
+    return field_violation(field, absl::StrCat("is ", name, ", must be a scan of ", patient_name(patient)));
+  }
+  return scan->id;
+}
+
+absl::StatusOr<ScanIds> scans_of(const std::string& patient, const v1::ModelSpec& spec) {
+  ScanIds ids;
+  if (!spec.has_scan_region()) return ids;
+  FieldViolations violations;
+  const auto skin = scan_of(patient, spec.scan_region().scan(), "scan_region.scan");
+  violations.absorb("", skin.status());
+  if (skin.ok()) ids.skin = *skin;
+  if (!spec.scan_region().bone_scan().empty()) {
+    const auto bone = scan_of(patient, spec.scan_region().bone_scan(), "scan_region.bone_scan");
+    violations.absorb("", bone.status());
+    if (bone.ok()) ids.bone = *bone;
+  }
+  if (!violations.empty()) return violations.to_status();
+  return ids;
+}
+
+absl::Status check_complete(Backend& backend, const std::string& patient, const std::string& scan, const char* field) {
+  if (scan.empty()) return absl::OkStatus();
+  const auto record = backend.store.get_scan(patient, scan);
+  if (!record.ok()) return record.status();
+  if (record->complete) return absl::OkStatus();
+  return field_violation(field,
+                         absl::StrCat("is ", scan_name(patient, scan), ", which is not complete: ",
+                                      record->received_bytes, " of ", record->size_bytes, " bytes are here"),
+                         absl::StatusCode::kFailedPrecondition);
+}
+
+/// What is wrong with a specification without building anything, fields below "spec".
+absl::Status check_spec(Backend& backend, const std::string& patient, const v1::BuildModelRequest& request) {
+  FieldViolations violations;
+  if (!request.has_spec()) return field_violation("spec", "is missing");
+  auto face = to_face_model_spec(request.spec());
+  // That there will be one is enough here.
+  if (face.ok() && !request.spec().scan_region().bone_scan().empty()) face->bone.emplace();
+  violations.absorb("spec", face.ok() ? model::check_face_model(*face) : face.status());
+  const auto scans = scans_of(patient, request.spec());
+  violations.absorb("spec", scans.status());
+  if (!violations.empty()) return violations.to_status();
+  if (absl::Status small = check_size(request.spec(), backend.options.sizes); !small.ok()) return small;
+  const absl::Status skin = check_complete(backend, patient, scans->skin, "spec.scan_region.scan");
+  if (!skin.ok()) return skin;
+  return check_complete(backend, patient, scans->bone, "spec.scan_region.bone_scan");
+}
+
+absl::StatusOr<ModelCache::Model> build(Backend& backend, const std::string& operation, const std::string& patient,
+                                        const v1::ModelSpec& message) {
+  Operations& operations = backend.operations;
+  const bool has_scan = message.has_scan_region();
+  if (!operations.report(operation, 0.0, has_scan ? "reading the scan" : "building")) {
+    return absl::CancelledError("the operation was cancelled");
+  }
+  const auto spec = read_model_spec(backend, patient, message);
+  if (!spec.ok()) return with_prefix("spec", spec.status());
+  const double done = has_scan ? kScanFraction : 0.0;
+  const auto progress = [&](double fraction, const char* stage) {
+    return operations.report(operation, done + (1.0 - done) * fraction, stage);
+  };
+  auto model = model::build_face_model(*spec, progress);
+  if (!model.ok()) return with_prefix("spec", model.status());
+  // The last moment at which a cancellation leaves nothing behind.
+  if (!operations.report(operation, 1.0, "keeping the model")) {
+    return absl::CancelledError("the operation was cancelled");
+  }
+  return model;
+}
+
+absl::StatusOr<std::string> build_and_keep(Backend& backend, const std::string& operation, const std::string& patient,
+                                           const v1::ModelSpec& message, const RequestKey& request) {
+  const auto model = build(backend, operation, patient, message);
+  if (!model.ok()) return model.status();
+  const auto scans = scans_of(patient, message);
+  if (!scans.ok()) return scans.status();
+  ModelRecord record;
+  record.patient = patient;
+  record.id = make_id('m');
+  record.scan = scans->skin;
+  record.bone_scan = scans->bone;
+  record.content_hash = (*model)->content_hash;
+  record.spec_message = fill_tissue_figures(message).SerializeAsString();
+  record.report_message = to_model_report(**model).SerializeAsString();
+  record.create_time_us = now_us();
+  const auto kept = backend.store.create_model(record, request);
+  if (!kept.ok()) return kept.status();
+  backend.models.put(model_name(kept->patient, kept->id), *model);
+  spdlog::info("{} built from {} hexahedra, {}", model_name(kept->patient, kept->id),
+               (*model)->geometry.grid.n_hexahedra(), kept->content_hash);
+  return to_model(*kept).SerializeAsString();
+}
+
+void run_build(Backend& backend, const std::string& operation, const std::string& patient, const v1::ModelSpec& message,
+               const RequestKey& request) {
+  absl::StatusOr<std::string> result = absl::UnknownError("");
+  const absl::Status status = guarded([&] {
+    result = build_and_keep(backend, operation, patient, message, request);
+    return result.status();
+  });
+  if (!status.ok()) {
+    result = status;
+    spdlog::info("operations/{} failed: {}", operation, status.ToString());
+  }
+  backend.operations.finish(operation, std::move(result));
+}
+
+/// The operation of an equal request before a restart, of which the model is left.
+absl::StatusOr<std::optional<OperationView>> find_earlier(Backend& backend, const std::string& patient,
+                                                          const RequestKey& request) {
+  const auto name = backend.store.find_request(request);
+  if (!name.ok()) return name.status();
+  if (!name->has_value()) return std::nullopt;
+  const auto ids = parse_model_name(**name, "");
+  if (!ids.ok()) return ids.status();
+  const auto record = backend.store.get_model(ids->patient, ids->id);
+  if (!record.ok()) return record.status();
+  return backend.operations.add_done(patient_name(patient), request, to_model(*record).SerializeAsString());
+}
+
+/// What a request that is only to be checked is answered when nothing is wrong with it.
+OperationView checked_only(const v1::BuildModelRequest& request) {
+  v1::Model model;
+  *model.mutable_spec() = fill_tissue_figures(request.spec());
+  OperationView view;
+  view.target = request.parent();
+  view.response_message = model.SerializeAsString();
+  view.done = true;
+  view.progress = 1.0;
+  view.stage = "checked, not built";
+  return view;
+}
+
+}  // namespace
+
+v1::Model to_model(const ModelRecord& record) {
+  v1::Model model;
+  model.set_name(model_name(record.patient, record.id));
+  model.mutable_spec()->ParseFromString(record.spec_message);
+  model.mutable_report()->ParseFromString(record.report_message);
+  *model.mutable_create_time() = to_timestamp(record.create_time_us);
+  return model;
+}
+
+absl::StatusOr<model::FaceModelSpec> read_model_spec(Backend& backend, const std::string& patient,
+                                                     const v1::ModelSpec& message) {
+  auto spec = to_face_model_spec(message);
+  if (!spec.ok()) return spec.status();
+  const auto scans = scans_of(patient, message);
+  if (!scans.ok()) return scans.status();
+  if (scans->skin.empty()) return spec;
+  auto surface = read_scan_surface(backend, patient, scans->skin);
+  if (!surface.ok()) return surface.status();
+  std::get<geometry::ScanRegionSpec>(spec->region).scan = *std::move(surface);
+  if (scans->bone.empty()) return spec;
+  auto bone = read_scan_surface(backend, patient, scans->bone);
+  if (!bone.ok()) return bone.status();
+  spec->bone = *std::move(bone);
+  return spec;
+}
+
+absl::StatusOr<OperationView> start_model_build(Backend& backend, const Principal& caller,
+                                                const v1::BuildModelRequest& request) {
+  const auto patient = parse_patient_name(request.parent(), "parent");
+  if (!patient.ok()) return patient.status();
+  if (auto good = check_request_id(request.request_id()); !good.ok()) return good;
+  if (const auto known = backend.store.get_patient(*patient); !known.ok()) return known.status();
+  if (const auto good = check_spec(backend, *patient, request); !good.ok()) return good;
+  if (request.validate_only()) return checked_only(request);
+  const RequestKey key = make_request_key(caller, "BuildModel", request.request_id(), request);
+  const auto earlier = find_earlier(backend, *patient, key);
+  if (!earlier.ok()) return earlier.status();
+  if (earlier->has_value()) return **earlier;
+  const auto started = backend.operations.start(request.parent(), key);
+  if (!started.ok()) return started.status();
+  if (!started->is_new) return started->operation;
+  const std::string id = started->operation.id;
+  const bool taken = backend.builds.run(
+      [&backend, id, patient = *patient, spec = request.spec(), key] { run_build(backend, id, patient, spec, key); },
+      id);
+  if (!taken) {
+    backend.operations.drop(id);
+    return shortage(
+        "TOO_MANY_BUILDS", 5.0,
+        absl::StrCat("too many models are waiting to be built, the bound is ", backend.builds.max_queued()));
+  }
+  spdlog::info("operations/{} builds a model of {}", id, request.parent());
+  return started->operation;
+}
+
+}  // namespace lipofill::server

@@ -1,0 +1,316 @@
+#include "server/simulations/simulation_service.h"
+
+#include <memory>
+#include <optional>
+
+#include "absl/strings/str_cat.h"
+#include "server/backend/parking.h"
+#include "server/backend/result_reading.h"
+#include "server/backend/simulation_creation.h"
+#include "server/entry/listing.h"
+#include "server/entry/unary.h"
+#include "server/simulations/checkpoint_calls.h"
+#include "server/simulations/tissue_deck.h"
+#include "server/wire/etag.h"
+#include "server/wire/field_mask.h"
+#include "server/wire/names.h"
+#include "server/wire/request_key.h"
+#include "server/wire/simulation_conversion.h"
+#include "server/wire/violation_prefix.h"
+
+namespace lipofill::server {
+namespace {
+
+using Reactor = grpc::ServerUnaryReactor;
+
+/// Answers with the session's view and the record it belongs to.
+Session::Reply reply_to(Backend& backend, const std::string& id, Reactor* reactor, v1::Simulation* response,
+                        const std::function<void(v1::Simulation&)>& amend = nullptr) {
+  return [&backend, id, reactor, response, amend](const absl::StatusOr<SessionView>& view) {
+    const absl::Status done = guarded([&]() -> absl::Status {
+      if (!view.ok()) return view.status();
+      const auto record = backend.store.get_simulation(id);
+      if (record.ok()) *response = to_simulation(*record, &*view);
+      if (record.ok() && amend != nullptr) amend(*response);
+      return record.status();
+    });
+    reactor->Finish(to_grpc_status(done));
+  };
+}
+
+/// What is wrong with an injection is named below "injection"; an etag that does not fit is none of its fields.
+absl::Status name_injection(const absl::Status& status) {
+  return absl::IsAborted(status) ? status : with_prefix("injection", status);
+}
+
+absl::StatusOr<InjectionOrder> read_injection(Backend& backend, const std::string& id,
+                                              const v1::InjectRequest& request) {
+  const auto injection = to_injection_spec(request.injection());
+  if (!injection.ok()) return name_injection(injection.status());
+  const auto check = [&backend, id, etag = request.etag()]() -> absl::Status {
+    if (etag.empty()) return absl::OkStatus();
+    const auto record = backend.store.get_simulation(id);
+    return record.ok() ? check_etag(etag, make_etag(*record), "etag") : record.status();
+  };
+  return InjectionOrder{*injection, request.injection().SerializeAsString(), check};
+}
+
+void foresee_injection(Session& session, const InjectionOrder& order, const v1::Injection& injection,
+                       const std::shared_ptr<std::optional<v1::Injection>>& foreseen, const Session::Reply& reply) {
+  session.foresee(order, [&session, injection, foreseen, reply](const absl::StatusOr<plan::InjectionSpec>& spec) {
+    if (!spec.ok()) return reply(name_injection(spec.status()));
+    *foreseen = injection;
+    (*foreseen)->set_start_s(spec->start.value_or(0.0));
+    reply(session.cached_view());
+  });
+}
+
+/// What becomes of a command when there is no session: the simulation has ended, perhaps by an equal request, or could
+/// not be brought back.
+absl::Status answer_without_session(Backend& backend, const SimulationRecord& record, const char* what,
+                                    const RequestKey& key, v1::Simulation& response) {
+  const auto earlier = backend.store.find_request(key);
+  if (!earlier.ok()) return earlier.status();
+  if (!earlier->has_value()) return no_session_for(what, record);
+  response = to_simulation(record, nullptr);
+  return absl::OkStatus();
+}
+
+using Act = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
+
+void wake_and_act(Backend& backend, const std::string& id, const RequestKey& key, const Act& act,
+                  const Unwanted& unwanted, const Session::Reply& reply) {
+  absl::StatusOr<std::shared_ptr<Session>> session = nullptr;
+  const absl::Status woken = guarded_if_wanted(unwanted, [&] {
+    session = find_or_wake(backend, id);
+    return session.status();
+  });
+  if (!woken.ok()) return reply(woken);
+  if (*session == nullptr) return reply(absl::UnavailableError("the simulation ended at this moment; try again"));
+  act(**session, key, reply);
+}
+
+}  // namespace
+
+template <typename Request>
+Reactor* SimulationService::command(Context* context, const Request* request, v1::Simulation* response,
+                                    const char* what, const Act& act, const Amend& amend) {
+  Reactor* reactor = context->DefaultReactor();
+  bool answered = false;
+  const LogScope scope(call_of(context).log_fields());
+  const absl::Status done = guarded([&]() -> absl::Status {
+    if (const absl::Status valid = check_call(context, *request); !valid.ok()) return valid;
+    const auto id = parse_simulation_name(request->name(), "name");
+    if (!id.ok()) return id.status();
+    if (const absl::Status valid = check_request_id(request->request_id()); !valid.ok()) return valid;
+    const RequestKey key = make_request_key(call_of(context).principal, what, request->request_id(), *request);
+    if (const auto session = backend_.sessions.hold(*id); session != nullptr) {
+      answered = true;
+      act(*session, key, reply_to(backend_, *id, reactor, response, amend));
+      return absl::OkStatus();
+    }
+    const auto record = backend_.store.get_simulation(*id);
+    if (!record.ok()) return record.status();
+    if (!is_parked(*record)) return answer_without_session(backend_, *record, what, key, *response);
+    answered = backend_.calls.run(
+        [this, context, id = *id, key, act, reply = reply_to(backend_, *id, reactor, response, amend)] {
+          wake_and_act(backend_, id, key, act, caller_has_left(context), reply);
+        });
+    return too_many_calls(backend_);
+  });
+  if (!answered) reactor->Finish(to_grpc_status(done));
+  return reactor;
+}
+
+Reactor* SimulationService::CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
+                                             v1::Simulation* response) {
+  return answer_later(context, request, backend_, [this, context, request, response] {
+    auto simulation = create_simulation(backend_, call_of(context).principal, *request, caller_has_left(context));
+    if (simulation.ok()) *response = *std::move(simulation);
+    return simulation.status();
+  });
+}
+
+Reactor* SimulationService::GetSimulation(Context* context, const v1::GetSimulationRequest* request,
+                                          v1::Simulation* response) {
+  const auto id = parse_simulation_name(request->name(), "name");
+  const absl::Status masked = check_field_mask(request->read_mask(), *v1::Simulation::descriptor(), "read_mask");
+  const auto session = id.ok() && masked.ok() ? backend_.sessions.find(*id) : nullptr;
+  if (session != nullptr && check_call(context, *request).ok()) {
+    Reactor* reactor = context->DefaultReactor();
+    session->inspect(reply_to(backend_, *id, reactor, response,
+                              [mask = request->read_mask()](v1::Simulation& shown) { keep_masked(mask, shown); }));
+    return reactor;
+  }
+  return answer(context, request, [&]() -> absl::Status {
+    if (!id.ok()) return id.status();
+    if (!masked.ok()) return masked;
+    const auto record = backend_.store.get_simulation(*id);
+    if (record.ok()) *response = to_simulation(*record, nullptr);
+    keep_masked(request->read_mask(), *response);
+    return record.status();
+  });
+}
+
+Reactor* SimulationService::ListSimulations(Context* context, const v1::ListSimulationsRequest* request,
+                                            v1::ListSimulationsResponse* response) {
+  return answer(context, request, [&]() -> absl::Status {
+    const auto page = parse_page("simulations", request->page_size(), request->page_token());
+    if (!page.ok()) return page.status();
+    const auto& mask = request->read_mask();
+    if (auto good = check_field_mask(mask, *v1::Simulation::descriptor(), "read_mask"); !good.ok()) return good;
+    const auto records = backend_.store.list_simulations(call_of(context).principal.scope, one_more(*page));
+    if (!records.ok()) return records.status();
+    response->set_next_page_token(fill_page("simulations", *page, *records, [&](const SimulationRecord& record) {
+      const auto session = backend_.sessions.find(record.id);
+      const SessionView view = session != nullptr ? session->cached_view() : SessionView{};
+      *response->add_simulations() = to_simulation(record, session != nullptr ? &view : nullptr);
+      keep_masked(mask, *response->mutable_simulations()->rbegin());
+    }));
+    return absl::OkStatus();
+  });
+}
+
+Reactor* SimulationService::StartSimulation(Context* context, const v1::StartSimulationRequest* request,
+                                            v1::Simulation* response) {
+  return command(context, request, response, "start", [](Session& session, RequestKey key, Session::Reply reply) {
+    session.start(std::move(key), std::move(reply));
+  });
+}
+
+Reactor* SimulationService::PauseSimulation(Context* context, const v1::PauseSimulationRequest* request,
+                                            v1::Simulation* response) {
+  return command(context, request, response, "pause", [](Session& session, RequestKey key, Session::Reply reply) {
+    session.pause(std::move(key), std::move(reply));
+  });
+}
+
+Reactor* SimulationService::ResumeSimulation(Context* context, const v1::ResumeSimulationRequest* request,
+                                             v1::Simulation* response) {
+  return command(context, request, response, "resume", [](Session& session, RequestKey key, Session::Reply reply) {
+    session.resume(std::move(key), std::move(reply));
+  });
+}
+
+Reactor* SimulationService::StopSimulation(Context* context, const v1::StopSimulationRequest* request,
+                                           v1::Simulation* response) {
+  return command(context, request, response, "stop", [](Session& session, RequestKey key, Session::Reply reply) {
+    session.stop("stopped by a client", std::move(key), std::move(reply));
+  });
+}
+
+Reactor* SimulationService::DeleteSimulation(Context* context, const v1::DeleteSimulationRequest* request,
+                                             google::protobuf::Empty*) {
+  const auto id = parse_simulation_name(request->name(), "name");
+  const auto session = id.ok() ? backend_.sessions.hold(*id) : nullptr;
+  if (session != nullptr && check_call(context, *request).ok()) {
+    Reactor* reactor = context->DefaultReactor();
+    session->abandon(
+        [this, id = *id, etag = request->etag()] { return delete_simulation_record(backend_, id, etag); },
+        [reactor](const absl::StatusOr<SessionView>& view) { reactor->Finish(to_grpc_status(view.status())); });
+    return reactor;
+  }
+  return answer(context, request, [&] {
+    // None may be woken meanwhile.
+    const std::lock_guard lock(backend_.waking);
+    return id.ok() ? delete_simulation_record(backend_, *id, request->etag()) : id.status();
+  });
+}
+
+Reactor* SimulationService::Inject(Context* context, const v1::InjectRequest* request, v1::Simulation* response) {
+  const auto foreseen = std::make_shared<std::optional<v1::Injection>>();
+  const auto act = [this, request, foreseen](Session& session, RequestKey key, Session::Reply reply) {
+    const auto order = read_injection(backend_, session.id(), *request);
+    if (!order.ok()) return reply(order.status());
+    if (request->validate_only()) return foresee_injection(session, *order, request->injection(), foreseen, reply);
+    session.inject(*order, std::move(key), [reply](absl::StatusOr<SessionView> view) {
+      if (!view.ok()) return reply(name_injection(view.status()));
+      reply(std::move(view));
+    });
+  };
+  return command(context, request, response, "inject", act, [foreseen](v1::Simulation& simulation) {
+    if (foreseen->has_value()) *simulation.mutable_spec()->add_injections() = **foreseen;
+  });
+}
+
+Reactor* SimulationService::CreateCheckpoint(Context* context, const v1::CreateCheckpointRequest* request,
+                                             v1::Checkpoint* response) {
+  return answer_later(context, request, backend_, [this, context, request, response] {
+    auto checkpoint = create_checkpoint(backend_, call_of(context).principal, *request);
+    if (checkpoint.ok()) *response = *std::move(checkpoint);
+    return checkpoint.status();
+  });
+}
+
+Reactor* SimulationService::GetCheckpoint(Context* context, const v1::GetCheckpointRequest* request,
+                                          v1::Checkpoint* response) {
+  return answer(context, request, [&]() -> absl::Status {
+    const auto parts = parse_checkpoint_name(request->name(), "name");
+    if (!parts.ok()) return parts.status();
+    const auto record = backend_.store.get_checkpoint(parts->simulation, parts->id);
+    if (record.ok()) *response = to_checkpoint(*record);
+    return record.status();
+  });
+}
+
+Reactor* SimulationService::ListCheckpoints(Context* context, const v1::ListCheckpointsRequest* request,
+                                            v1::ListCheckpointsResponse* response) {
+  return answer(context, request, [&]() -> absl::Status {
+    const auto id = parse_simulation_name(request->parent(), "parent");
+    if (!id.ok()) return id.status();
+    const std::string collection = request->parent() + "/checkpoints";
+    const auto page = parse_page(collection, request->page_size(), request->page_token());
+    if (!page.ok()) return page.status();
+    const auto records = backend_.store.list_checkpoints(*id, one_more(*page));
+    if (!records.ok()) return records.status();
+    response->set_next_page_token(fill_page(collection, *page, *records, [&](const CheckpointRecord& record) {
+      *response->add_checkpoints() = to_checkpoint(record);
+    }));
+    return absl::OkStatus();
+  });
+}
+
+Reactor* SimulationService::DeleteCheckpoint(Context* context, const v1::DeleteCheckpointRequest* request,
+                                             google::protobuf::Empty*) {
+  return answer(context, request, [&]() -> absl::Status {
+    const auto parts = parse_checkpoint_name(request->name(), "name");
+    if (!parts.ok()) return parts.status();
+    if (auto done = backend_.store.delete_checkpoint(parts->simulation, parts->id); !done.ok()) return done;
+    backend_.checkpoint_files.remove(parts->simulation, parts->id);
+    return absl::OkStatus();
+  });
+}
+
+Reactor* SimulationService::RestoreSimulation(Context* context, const v1::RestoreSimulationRequest* request,
+                                              v1::Simulation* response) {
+  return answer_later(context, request, backend_, [this, context, request, response] {
+    auto simulation = restore_simulation(backend_, call_of(context).principal, *request);
+    if (simulation.ok()) *response = *std::move(simulation);
+    return simulation.status();
+  });
+}
+
+Reactor* SimulationService::GetSeries(Context* context, const v1::GetSeriesRequest* request,
+                                      v1::GetSeriesResponse* response) {
+  return answer(context, request, [&]() -> absl::Status {
+    const auto id = parse_simulation_name(request->name(), "name");
+    if (!id.ok()) return id.status();
+    return read_series(backend_, *id, request->after_step(), *response);
+  });
+}
+
+Reactor* SimulationService::EvaluateSimulation(Context* context, const v1::EvaluateSimulationRequest* request,
+                                               v1::Evaluation* response) {
+  return answer_later(context, request, backend_, [this, context, request, response]() -> absl::Status {
+    auto evaluation = evaluate_simulation(backend_, *request, caller_has_left(context));
+    if (evaluation.ok()) *response = *std::move(evaluation);
+    return evaluation.status();
+  });
+}
+
+grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* SimulationService::ExportTissueDeck(
+    Context* context, const v1::ExportTissueDeckRequest* request) {
+  return export_tissue_deck(backend_, context, *request);
+}
+
+}  // namespace lipofill::server

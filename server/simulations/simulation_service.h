@@ -1,0 +1,63 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "lipofill/v1/simulation_service.grpc.pb.h"
+#include "server/backend/backend.h"
+
+namespace lipofill::server {
+
+/// Simulations. See proto/lipofill/v1/simulation_service.proto for what each call does.
+class SimulationService : public v1::SimulationService::CallbackService {
+ public:
+  explicit SimulationService(Backend& backend) : backend_(backend) {}
+
+  using Context = grpc::CallbackServerContext;
+  using Reactor = grpc::ServerUnaryReactor;
+
+  Reactor* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
+                            v1::Simulation* response) override;
+  Reactor* GetSimulation(Context* context, const v1::GetSimulationRequest* request, v1::Simulation* response) override;
+  Reactor* ListSimulations(Context* context, const v1::ListSimulationsRequest* request,
+                           v1::ListSimulationsResponse* response) override;
+  Reactor* StartSimulation(Context* context, const v1::StartSimulationRequest* request,
+                           v1::Simulation* response) override;
+  Reactor* PauseSimulation(Context* context, const v1::PauseSimulationRequest* request,
+                           v1::Simulation* response) override;
+  Reactor* ResumeSimulation(Context* context, const v1::ResumeSimulationRequest* request,
+                            v1::Simulation* response) override;
+  Reactor* StopSimulation(Context* context, const v1::StopSimulationRequest* request,
+                          v1::Simulation* response) override;
+  Reactor* DeleteSimulation(Context* context, const v1::DeleteSimulationRequest* request,
+                            google::protobuf::Empty* response) override;
+  Reactor* Inject(Context* context, const v1::InjectRequest* request, v1::Simulation* response) override;
+  Reactor* CreateCheckpoint(Context* context, const v1::CreateCheckpointRequest* request,
+                            v1::Checkpoint* response) override;
+  Reactor* GetCheckpoint(Context* context, const v1::GetCheckpointRequest* request, v1::Checkpoint* response) override;
+  Reactor* ListCheckpoints(Context* context, const v1::ListCheckpointsRequest* request,
+                           v1::ListCheckpointsResponse* response) override;
+  Reactor* DeleteCheckpoint(Context* context, const v1::DeleteCheckpointRequest* request,
+                            google::protobuf::Empty* response) override;
+  Reactor* RestoreSimulation(Context* context, const v1::RestoreSimulationRequest* request,
+                             v1::Simulation* response) override;
+  Reactor* GetSeries(Context* context, const v1::GetSeriesRequest* request, v1::GetSeriesResponse* response) override;
+  Reactor* EvaluateSimulation(Context* context, const v1::EvaluateSimulationRequest* request,
+                              v1::Evaluation* response) override;
+  grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* ExportTissueDeck(
+      Context* context, const v1::ExportTissueDeckRequest* request) override;
+
+ private:
+  /// What an answer gets beside what is in the store.
+  using Amend = std::function<void(v1::Simulation& simulation)>;
+  using Act = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
+  /// Has the session act and answers with the simulation as it is then; FAILED_PRECONDITION when it has ended, unless
+  /// an equal request was carried out before that.
+  template <typename Request>
+  Reactor* command(Context* context, const Request* request, v1::Simulation* response, const char* what, const Act& act,
+                   const Amend& amend = nullptr);
+
+  Backend& backend_;
+};
+
+}  // namespace lipofill::server

@@ -1,0 +1,259 @@
+#include "server/wire/report_conversion.h"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace lipofill::server {
+namespace {
+
+constexpr double kMillimetrePerMetre = 1e3;
+constexpr double kMillilitrePerCubicMetre = 1e6;
+constexpr double kMillisecondPerSecond = 1e3;
+constexpr double kMillijoulePerJoule = 1e3;
+
+/// Volume of the hexahedra of a grid [m3]: det(J) at 2 x 2 x 2 Gauss points, exact for trilinear shapes.
+double compute_tissue_volume(const geometry::LayeredGrid& grid) {
+  const double g = 1.0 / std::sqrt(3.0);
+  double volume = 0.0;
+  for (int level = 0; level + 1 < grid.n_levels(); ++level) {
+    for (int j = 0; j < grid.n_eta; ++j) {
+      for (int i = 0; i < grid.n_xi; ++i) {
+        const auto at = [&](int a, int b, int c) -> Eigen::Vector3d {
+          return grid.nodes.col(grid.node(level + c, i + a, j + b));
+        };
+        for (int q = 0; q < 8; ++q) {
+          const double xi = (q & 1) ? g : -g, eta = (q & 2) ? g : -g, zeta = (q & 4) ? g : -g;
+          Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
+          for (int n = 0; n < 8; ++n) {
+            const double a = (n & 1) ? 1 : -1, b = (n & 2) ? 1 : -1, c = (n & 4) ? 1 : -1;
+            const Eigen::Vector3d gradient(a * (1 + b * eta) * (1 + c * zeta), b * (1 + a * xi) * (1 + c * zeta),
+                                           c * (1 + a * xi) * (1 + b * eta));
+            jacobian += at(n & 1, (n >> 1) & 1, (n >> 2) & 1) * gradient.transpose() / 8.0;
+          }
+          volume += std::abs(jacobian.determinant());
+        }
+      }
+    }
+  }
+  return volume;
+}
+
+void add_layers(const model::FaceModel& model, v1::ModelReport& report) {
+  for (size_t l = 0; l < model.layers.size(); ++l) {
+    v1::LayerReport& layer = *report.add_layers();
+    layer.set_name(model.layers[l].name);
+    layer.set_min_thickness_mm(model.thickness[l].min * kMillimetrePerMetre);
+    layer.set_mean_thickness_mm(model.thickness[l].mean * kMillimetrePerMetre);
+    layer.set_max_thickness_mm(model.thickness[l].max * kMillimetrePerMetre);
+  }
+}
+
+v1::BoneReport to_bone_report(const model::BoneFinding& bone) {
+  v1::BoneReport report;
+  report.set_measured_share(bone.measured_share);
+  report.set_limited_share(bone.limited_share);
+  report.set_min_depth_mm(bone.depth.min * kMillimetrePerMetre);
+  report.set_mean_depth_mm(bone.depth.mean * kMillimetrePerMetre);
+  report.set_max_depth_mm(bone.depth.max * kMillimetrePerMetre);
+  return report;
+}
+
+v1::PreviewSummary::State to_preview_state(PreviewState state) {
+  switch (state) {
+    case PreviewState::kPending:
+      return v1::PreviewSummary::PENDING;
+    case PreviewState::kRunning:
+      return v1::PreviewSummary::RUNNING;
+    case PreviewState::kDone:
+      return v1::PreviewSummary::DONE;
+    case PreviewState::kFailed:
+      return v1::PreviewSummary::FAILED;
+    case PreviewState::kOutdated:
+      return v1::PreviewSummary::OUTDATED;
+  }
+  return v1::PreviewSummary::STATE_UNSPECIFIED;
+}
+
+v1::PreviewSummary to_preview_summary(const PreviewView& view) {
+  v1::PreviewSummary summary;
+  summary.set_state(to_preview_state(view.state));
+  summary.set_reason(view.reason);
+  summary.set_wall_s(view.wall_s);
+  summary.set_steps(view.report.step);
+  summary.set_time_s(view.report.time);
+  summary.set_hexahedra(static_cast<uint32_t>(view.n_hexahedra));
+  summary.set_film_cells(static_cast<uint32_t>(view.n_film_cells));
+  summary.set_skin_max_displacement_mm(view.report.skin_max_displacement * kMillimetrePerMetre);
+  summary.set_skin_volume_change_ml(view.report.skin_volume_change * kMillilitrePerCubicMetre);
+  if (!view.difference) return summary;
+  summary.set_difference_max_mm(view.difference->max * kMillimetrePerMetre);
+  summary.set_difference_rms_mm(view.difference->rms * kMillimetrePerMetre);
+  summary.set_difference_volume_ml(view.difference->volume * kMillilitrePerCubicMetre);
+  return summary;
+}
+
+}  // namespace
+
+v1::ModelReport to_model_report(const model::FaceModel& model) {
+  const geometry::FaceGeometry& face = model.geometry;
+  v1::ModelReport report;
+  report.set_content_hash(model.content_hash);
+  report.set_hexahedra(static_cast<uint32_t>(face.grid.n_hexahedra()));
+  report.set_nodes(static_cast<uint32_t>(face.grid.nodes.cols()));
+  report.set_min_scaled_jacobian(face.grid.min_scaled_jacobian);
+  report.set_area_cm2(face.skin_area * 1e4);
+  report.set_tissue_volume_ml(compute_tissue_volume(face.grid) * kMillilitrePerCubicMetre);
+  report.set_scan_vertices_in_patch(static_cast<uint32_t>(face.riders.size()));
+  report.set_max_chart_deviation_mm(face.max_rider_distance * kMillimetrePerMetre);
+  for (const std::string& remark : face.scan_remarks) report.add_scan_remarks(remark);
+  add_layers(model, report);
+  if (model.bone) *report.mutable_bone() = to_bone_report(*model.bone);
+  return report;
+}
+
+v1::ScanReport to_scan_report(const geometry::SurfaceMesh& mesh, const geometry::SurfaceCheck& check) {
+  v1::ScanReport report;
+  report.set_vertices(static_cast<uint32_t>(mesh.n_vertices()));
+  report.set_triangles(static_cast<uint32_t>(mesh.n_triangles()));
+  report.set_components(static_cast<uint32_t>(check.components));
+  report.set_boundary_loops(static_cast<uint32_t>(check.boundary_loops));
+  report.set_non_manifold_edges(static_cast<uint32_t>(check.non_manifold_edges));
+  report.set_degenerate_triangles(static_cast<uint32_t>(check.degenerate_triangles));
+  report.set_size_x_mm(check.extent.x() * kMillimetrePerMetre);
+  report.set_size_y_mm(check.extent.y() * kMillimetrePerMetre);
+  report.set_size_z_mm(check.extent.z() * kMillimetrePerMetre);
+  return report;
+}
+
+v1::ComputingCost to_computing_cost(const step::CostSum& sum) {
+  v1::ComputingCost cost;
+  cost.set_cpu_ms(sum.times.total * kMillisecondPerSecond);
+  cost.set_element_cpu_ms(sum.times.element * kMillisecondPerSecond);
+  cost.set_factor_cpu_ms(sum.times.factor * kMillisecondPerSecond);
+  cost.set_solve_cpu_ms(sum.times.solve * kMillisecondPerSecond);
+  cost.set_film_cpu_ms(sum.times.film * kMillisecondPerSecond);
+  cost.set_coupling_cpu_ms(sum.times.coupling * kMillisecondPerSecond);
+  cost.set_factorisations(sum.factorisations);
+  cost.set_tissue_solves(sum.tissue_solves);
+  cost.set_film_iterations(sum.film_iterations);
+  cost.set_newton_iterations(sum.newton_iterations);
+  cost.set_iterative_iterations(sum.iterative_iterations);
+  cost.set_fallbacks(sum.fallbacks);
+  return cost;
+}
+
+v1::Summary to_summary(const SessionView& view) {
+  const simulation::StepReport& step = view.report;
+  v1::Summary summary;
+  summary.set_steps(step.step);
+  summary.set_time_s(step.time);
+  summary.set_wall_s(view.wall_s);
+  summary.set_step_ms_median(view.step_ms_median);
+  summary.set_hexahedra(static_cast<uint32_t>(view.n_hexahedra));
+  summary.set_film_cells(static_cast<uint32_t>(view.n_film_cells));
+  summary.set_dofs(static_cast<uint32_t>(view.n_dofs));
+  summary.set_injected_ml(step.injected * kMillilitrePerCubicMetre);
+  summary.set_film_volume_ml(step.film_volume * kMillilitrePerCubicMetre);
+  summary.set_gap_volume_ml(step.gap_volume * kMillilitrePerCubicMetre);
+  summary.set_film_volume_relative_error(step.film_volume_relative_error);
+  summary.set_gap_volume_relative_error(step.gap_volume_relative_error);
+  summary.set_max_pressure_pa(step.max_pressure);
+  summary.set_min_pressure_pa(step.min_pressure);
+  summary.set_mean_pressure_pa(step.mean_pressure);
+  summary.set_max_thickness_mm(step.max_thickness * kMillimetrePerMetre);
+  summary.set_skin_max_displacement_mm(step.skin_max_displacement * kMillimetrePerMetre);
+  summary.set_skin_volume_change_ml(step.skin_volume_change * kMillilitrePerCubicMetre);
+  summary.set_min_scaled_jacobian(step.min_scaled_jacobian);
+  summary.set_state_hash(view.state_hash);
+  summary.set_rejected_steps(step.rejected_steps);
+  summary.set_error_estimate_mm(step.error_estimate * kMillimetrePerMetre);
+  if (std::isfinite(step.settling_error)) summary.set_settling_error_mm(step.settling_error * kMillimetrePerMetre);
+  summary.set_void_volume_ml(step.void_volume * kMillilitrePerCubicMetre);
+  summary.set_undelivered_ml(step.undelivered * kMillilitrePerCubicMetre);
+  summary.set_elastic_energy_mj(step.elastic_energy * kMillijoulePerJoule);
+  summary.set_kinetic_energy_mj(step.kinetic_energy * kMillijoulePerJoule);
+  summary.set_injection_work_mj(step.injection_work * kMillijoulePerJoule);
+  summary.set_film_dissipation_mj(step.film_dissipation * kMillijoulePerJoule);
+  summary.set_closed_cells(static_cast<uint32_t>(step.closed_cells));
+  if (view.preview) *summary.mutable_preview() = to_preview_summary(*view.preview);
+  *summary.mutable_cost() = to_computing_cost(view.cost);
+  for (const simulation::LigamentReport& report : view.ligaments) {
+    v1::LigamentSummary* ligament = summary.add_ligaments();
+    ligament->set_name(report.name);
+    ligament->set_tension_n(report.tension);
+    ligament->set_largest_length_mm(report.largest_length * kMillimetrePerMetre);
+    ligament->set_points(static_cast<uint32_t>(report.points));
+    ligament->set_broken_points(static_cast<uint32_t>(report.broken_points));
+  }
+  for (const simulation::ZoneReport& report : view.zones) {
+    v1::ZoneSummary* zone = summary.add_zones();
+    zone->set_name(report.name);
+    zone->set_volume_ml(report.volume * kMillilitrePerCubicMetre);
+    zone->set_mean_pressure_pa(report.mean_pressure);
+    zone->set_max_thickness_mm(report.max_thickness * kMillimetrePerMetre);
+  }
+  return summary;
+}
+
+v1::SeriesRow to_series_row(const SeriesEntry& entry) {
+  const simulation::StepReport& step = entry.report;
+  v1::SeriesRow row;
+  row.set_step(step.step);
+  row.set_time_s(step.time);
+  row.set_step_ms(step.step_size * kMillisecondPerSecond);
+  row.set_injected_ml(step.injected * kMillilitrePerCubicMetre);
+  row.set_film_volume_ml(step.film_volume * kMillilitrePerCubicMetre);
+  row.set_gap_volume_ml(step.gap_volume * kMillilitrePerCubicMetre);
+  row.set_max_pressure_pa(step.max_pressure);
+  row.set_min_pressure_pa(step.min_pressure);
+  row.set_max_thickness_mm(step.max_thickness * kMillimetrePerMetre);
+  row.set_skin_max_displacement_mm(step.skin_max_displacement * kMillimetrePerMetre);
+  row.set_skin_speed_mm_per_s(step.skin_speed * kMillimetrePerMetre);
+  for (const double thickness : step.probe_thickness) row.add_probe_thickness_mm(thickness * kMillimetrePerMetre);
+  for (const double pressure : step.probe_pressure) row.add_probe_pressure_pa(pressure);
+  row.set_wall_ms(entry.wall_ms);
+  row.set_rejected_steps(step.rejected_steps);
+  row.set_error_estimate_mm(step.error_estimate * kMillimetrePerMetre);
+  row.set_void_volume_ml(step.void_volume * kMillilitrePerCubicMetre);
+  row.set_elastic_energy_mj(step.elastic_energy * kMillijoulePerJoule);
+  row.set_injection_work_mj(step.injection_work * kMillijoulePerJoule);
+  row.set_film_dissipation_mj(step.film_dissipation * kMillijoulePerJoule);
+  row.set_ligament_tension_n(step.ligament_tension);
+  row.set_broken_ligament_points(static_cast<uint32_t>(step.broken_ligament_points));
+  row.set_closed_cells(static_cast<uint32_t>(step.closed_cells));
+  step::CostSum cost;
+  cost.add(step.cost);
+  *row.mutable_cost() = to_computing_cost(cost);
+  return row;
+}
+
+v1::DistanceStatistics to_distance_statistics(const geometry::DistanceStatistics& statistics) {
+  v1::DistanceStatistics message;
+  message.set_mean_mm(statistics.mean * kMillimetrePerMetre);
+  message.set_rms_mm(statistics.rms * kMillimetrePerMetre);
+  message.set_p95_mm(statistics.p95 * kMillimetrePerMetre);
+  message.set_max_mm(statistics.max * kMillimetrePerMetre);
+  return message;
+}
+
+v1::Simulation::State to_state(SimulationState state) {
+  switch (state) {
+    case SimulationState::kReady:
+      return v1::Simulation::READY;
+    case SimulationState::kRunning:
+      return v1::Simulation::RUNNING;
+    case SimulationState::kPaused:
+      return v1::Simulation::PAUSED;
+    case SimulationState::kSettled:
+      return v1::Simulation::SETTLED;
+    case SimulationState::kFinished:
+      return v1::Simulation::FINISHED;
+    case SimulationState::kStopped:
+      return v1::Simulation::STOPPED;
+    case SimulationState::kFailed:
+      return v1::Simulation::FAILED;
+  }
+  return v1::Simulation::STATE_UNSPECIFIED;
+}
+
+}  // namespace lipofill::server

@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "core/coupling/algebra_threads.h"
 #include "server/backend/backend_metrics.h"
 #include "server/backend/parking.h"
 #include "server/backend/simulation_recovery.h"
@@ -89,6 +90,12 @@ absl::Status serve_until_signal(const Options& options, const Backend& backend, 
   const std::string where = absl::StrJoin(options.listen, ", ");
   const std::string port = server.port() > 0 ? absl::StrCat(" (port ", server.port(), ")") : "";
   spdlog::info("lipofilld serves {}{} with {} workers, data in {}", where, port, options.workers, options.data);
+  if (!coupling::has_pinned_kernels()) {
+    spdlog::warn(
+        "OpenBLAS computes with {} kernels, which cannot be pinned here: results differ from those of other "
+        "machines in their last digits",
+        coupling::algebra_kernels());
+  }
   const ServiceManager manager;
   manager.tell_ready("serving " + where);
   const int signal = wait_for_signal(manager.watchdog_period(), [&backend, &manager] {

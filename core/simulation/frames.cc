@@ -78,7 +78,7 @@ struct Simulation::Impl::FilmsNow {
 Simulation::Impl::FilmsNow Simulation::Impl::measure_films() const {
   FilmsNow now;
   for (size_t f = 0; f < films.size(); ++f) {
-    now.metric.push_back(stepper->film_metric(state, static_cast<int>(f)));
+    now.metric.push_back(stepper->geometry().metric_at(f, state.positions));
     now.thickness.emplace_back(state.films[f].volume.cwiseQuotient(now.metric[f].area));
   }
   int zones_before = 0;

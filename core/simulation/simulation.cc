@@ -60,7 +60,7 @@ absl::Status Simulation::Impl::set_up() {
   state = stepper->rest_state();
   frame_layout = make_frame_layout(model->geometry.grid, films, model->geometry);
   for (size_t f = 0; f < films.size(); ++f) {
-    rest_film_vertices.push_back(stepper->film_metric(state, static_cast<int>(f)).vertices);
+    rest_film_vertices.push_back(stepper->geometry().metric_at(f, state.positions).vertices);
   }
   if (const absl::Status status = stepper->open_to_initial_thickness(state); !status.ok()) return status;
   state.next_step = spec.step;
@@ -99,7 +99,7 @@ void Simulation::advance_step() {
   if (impl.phase != Phase::kRunning) return;
   double total_time = 0.0;
   {
-    const step::PhaseTimer timer(total_time);
+    const mechanics::PhaseTimer timer(total_time);
     impl.advance();
   }
   impl.report.cost = impl.stepper->cost();
@@ -163,7 +163,7 @@ double Simulation::Impl::estimate_error(const mechanics::SimulationState& next, 
   }
   for (size_t f = 0; f < films.size(); ++f) {
     const auto off = next.films[f].volume - state.films[f].volume - dt * state.films[f].volume_rate;
-    deviation = std::max(deviation, off.cwiseQuotient(stepper->rest_area(static_cast<int>(f))).cwiseAbs().maxCoeff());
+    deviation = std::max(deviation, off.cwiseQuotient(stepper->geometry().rest_area(f)).cwiseAbs().maxCoeff());
   }
   return deviation * dt / (dt + state.last_step);
 }

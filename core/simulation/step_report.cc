@@ -55,7 +55,7 @@ void Simulation::Impl::fill_report(const step::StepOutcome& outcome, double dt) 
   report.probe_thickness.assign(probes.size(), 0.0);
   report.probe_pressure.assign(probes.size(), 0.0);
   for (size_t f = 0; f < films.size(); ++f) {
-    const Eigen::VectorXd& area = stepper->measure_area(next, static_cast<int>(f));
+    const Eigen::VectorXd& area = stepper->geometry().update(f, next.positions).area;
     const mechanics::FilmState& film = next.films[f];
     for (int cell = 0; cell < films[f].grid.n_cells(); ++cell) figures.add(film, cell, area[cell]);
     for (size_t k = 0; k < probes.size(); ++k) {
@@ -140,7 +140,7 @@ std::vector<ZoneReport> Simulation::zone_reports() const {
   const Impl& impl = *impl_;
   for (size_t f = 0; f < impl.films.size(); ++f) {
     const plan::FilmLayout& layout = impl.films[f];
-    const Eigen::VectorXd area = impl.stepper->film_metric(impl.state, static_cast<int>(f)).area;
+    const Eigen::VectorXd area = impl.stepper->geometry().metric_at(f, impl.state.positions).area;
     std::vector<FilmFigures> zones(layout.zone_names.size());
     for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {
       zones[layout.grid.zone_of_cell[cell]].add(impl.state.films[f], cell, area[cell]);

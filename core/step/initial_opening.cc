@@ -1,4 +1,4 @@
-// Opening the tissue for the films' initial thickness, by load stepping.
+#include "core/step/initial_opening.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -6,7 +6,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
-#include "core/step/coupled_step.h"
 
 namespace lipofill::step {
 namespace {
@@ -19,6 +18,7 @@ constexpr double kIntermediateOpeningTolerance = 1e-3;
 constexpr double kOpeningStep = 1.0;
 constexpr int kMaxProducts = 300;
 constexpr double kProductTolerance = 1e-9;
+/// Share of the largest C 1 that a cell's own counts for at least in the preconditioner.
 constexpr double kLeastLumpedShare = 1e-3;
 
 /// p with C p = opening, by conjugate gradients preconditioned by diag(C 1).
@@ -44,67 +44,78 @@ bool open_by_products(coupling::CoupledFactor& factor, const Eigen::VectorXd& op
   return false;
 }
 
-}  // namespace
-
 /// Newton iterations on equilibrium with every cell holding `target`; false when they do not converge.
-bool CoupledStep::open_to(const Eigen::VectorXd& target, double tolerance, mechanics::SimulationState& state,
-                          Eigen::VectorXd& pressure) {
+bool open_to(const Opening& opening, const Eigen::VectorXd& target, double tolerance, mechanics::SimulationState& state,
+             Eigen::VectorXd& pressure) {
+  mechanics::TissueSystem& system = *opening.system;
+  coupling::CoupledFactor& factor = opening.factor->factor();
   for (int iteration = 0; iteration < kMaxOpeningIterations; ++iteration) {
-    if (!linearise_tissue(state, kOpeningStep, coupling::Precision::kDouble)) return false;
+    if (!opening.factor->factor_at(state.positions, state.spring_is_intact, kOpeningStep, coupling::Precision::kDouble))
+      return false;
     // From the present positions at rest: no inertia and no damping, weight and internal force only.
     Eigen::VectorXd force, response, dx;
-    compute_residual_force(state, state.positions, kOpeningStep, force);
-    factor_->solve_gap_response(force, response);
-    const Eigen::VectorXd opening = target - gaps_->volume() - response;
-    if (factor_->has_compliance()) {
-      pressure = factor_->compliance().llt().solve(opening);
-    } else if (!open_by_products(*factor_, opening, pressure)) {
+    opening.forces->compute(state, state.positions, kOpeningStep, force);
+    factor.solve_gap_response(force, response);
+    const Eigen::VectorXd missing = target - system.gaps().volume() - response;
+    if (factor.has_compliance()) {
+      pressure = factor.compliance().llt().solve(missing);
+    } else if (!open_by_products(factor, missing, pressure)) {
       return false;
     }
-    factor_->solve_displacement(pressure, dx);
-    add_displacement(dx, state.positions);
+    factor.solve_displacement(pressure, dx);
+    system.add_displacement(dx, state.positions);
     if (!state.positions.allFinite()) return false;
-    gaps_->evaluate(state.positions);
-    const double gap_error = (target - gaps_->volume()).cwiseAbs().sum() / target.cwiseAbs().sum();
-    const double moved = (state.positions - tissue_->tissue.mesh().rest_positions).cwiseAbs().maxCoeff();
+    system.evaluate_gaps(state.positions);
+    const double gap_error = (target - system.gaps().volume()).cwiseAbs().sum() / target.cwiseAbs().sum();
+    const double moved = (state.positions - system.rest_positions()).cwiseAbs().maxCoeff();
     if (gap_error <= tolerance && dx.cwiseAbs().maxCoeff() <= 10.0 * tolerance * moved) return true;
   }
   return false;
 }
 
-absl::Status CoupledStep::open_to_initial_thickness(mechanics::SimulationState& state) {
-  Eigen::VectorXd initial(cell_offset_.back());
-  for (size_t f = 0; f < films_.size(); ++f) {
-    for (int cell = 0; cell < films_[f].grid.n_cells(); ++cell) {
-      const geometry::ChartPoint centre = films_[f].cell_centre(cell);
-      initial[cell_offset_[f] + cell] = rest_area_[f][cell] * films_[f].initial_thickness.at(centre.xi, centre.eta);
+/// Fills every film to its initial thickness. Returns the volumes of all cells [m3].
+Eigen::VectorXd fill(const Opening& opening, mechanics::SimulationState& state) {
+  const mechanics::FilmCells& cells = opening.cells;
+  Eigen::VectorXd initial(cells.n());
+  for (size_t f = 0; f < opening.films.size(); ++f) {
+    const plan::FilmLayout& layout = opening.films[f];
+    const Eigen::VectorXd& area = opening.geometry.rest_area(f);
+    mechanics::FilmState& film = state.films[f];
+    auto volume = initial.segment(cells.offset[f], cells.n_of(f));
+    const auto rest = opening.rest_volume.segment(cells.offset[f], cells.n_of(f));
+    for (int cell = 0; cell < cells.n_of(f); ++cell) {
+      const geometry::ChartPoint centre = layout.cell_centre(cell);
+      volume[cell] = area[cell] * layout.initial_thickness.at(centre.xi, centre.eta);
     }
-    const int n = films_[f].grid.n_cells();
-    state.films[f].volume = initial.segment(cell_offset_[f], n);
-    for (Eigen::Index cell = 0; cell < state.films[f].is_entered.size(); ++cell) {
-      const bool is_open = initial[cell_offset_[f] + cell] > rest_volume_[cell_offset_[f] + cell];
-      state.films[f].is_entered[cell] = static_cast<double>(is_open);
+    film.volume = volume;
+    for (Eigen::Index cell = 0; cell < film.is_entered.size(); ++cell) {
+      film.is_entered[cell] = static_cast<double>(volume[cell] > rest[cell]);
     }
-    if (films_[f].wall != plan::FilmWallKind::kWinkler) continue;
-    state.films[f].pressure = films_[f].wall_stiffness *
-                              (state.films[f].volume - rest_volume_.segment(cell_offset_[f], films_[f].grid.n_cells()))
-                                  .cwiseQuotient(rest_area_[f]);
+    if (layout.wall != plan::FilmWallKind::kWinkler) continue;
+    film.pressure = layout.wall_stiffness * (film.volume - rest).cwiseQuotient(area);
   }
-  Eigen::VectorXd opening;
-  gather_tissue_part(initial - rest_volume_, opening);
-  if (opening.size() == 0 || opening.cwiseAbs().maxCoeff() == 0.0) return absl::OkStatus();
+  return initial;
+}
+
+}  // namespace
+
+absl::Status open_to_initial_thickness(const Opening& opening, mechanics::SimulationState& state) {
+  const mechanics::FilmCells& cells = opening.cells;
+  const Eigen::VectorXd initial = fill(opening, state);
+  Eigen::VectorXd target;
+  cells.gather_tissue_part(initial - opening.rest_volume, target);
+  if (target.size() == 0 || target.cwiseAbs().maxCoeff() == 0.0) return absl::OkStatus();
   Eigen::VectorXd pressure;
   for (int load = 1; load <= kOpeningLoadSteps; ++load) {
     const double tolerance = load == kOpeningLoadSteps ? kOpeningTolerance : kIntermediateOpeningTolerance;
-    if (open_to(opening * load / kOpeningLoadSteps, tolerance, state, pressure)) continue;
+    if (open_to(opening, target * load / kOpeningLoadSteps, tolerance, state, pressure)) continue;
     return field_violation(
         "films", absl::StrCat("initial_thickness_mm opens the tissue further than it can go: no equilibrium at ",
                               100 * load / kOpeningLoadSteps, " % of it"));
   }
-  for (size_t k = 0; k < cell_of_tissue_.size(); ++k) {
-    const auto f =
-        std::upper_bound(cell_offset_.begin(), cell_offset_.end(), cell_of_tissue_[k]) - cell_offset_.begin() - 1;
-    state.films[f].pressure[cell_of_tissue_[k] - cell_offset_[f]] = pressure[k];
+  for (size_t k = 0; k < cells.on_tissue.size(); ++k) {
+    const int f = cells.film_of(cells.on_tissue[k]);
+    state.films[f].pressure[cells.on_tissue[k] - cells.offset[f]] = pressure[static_cast<Eigen::Index>(k)];
   }
   return absl::OkStatus();
 }

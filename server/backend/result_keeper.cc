@@ -148,7 +148,7 @@ absl::Status ResultKeeper::append_series(const std::string& id, const std::vecto
 }
 
 void ResultKeeper::stepped(const SeriesEntry& entry) {
-  const step::StepCost& cost = entry.report.cost;
+  const mechanics::StepCost& cost = entry.report.cost;
   StepFigures step;
   step.wall_s = 1e-3 * entry.wall_ms;
   step.cpu_s = cost.times.total;

@@ -220,7 +220,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   Clock::time_point checkpoint_due_;
   std::optional<uint64_t> saved_step_;  ///< step of the last checkpoint
   std::vector<float> step_ms_;
-  step::CostSum cost_;
+  mechanics::CostSum cost_;
   bool clock_runs_ = false;
   Clock::time_point running_since_;
   double running_since_time_s_ = 0.0;  ///< simulated

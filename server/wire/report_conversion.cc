@@ -125,7 +125,7 @@ v1::ScanReport to_scan_report(const geometry::SurfaceMesh& mesh, const geometry:
   return report;
 }
 
-v1::ComputingCost to_computing_cost(const step::CostSum& sum) {
+v1::ComputingCost to_computing_cost(const mechanics::CostSum& sum) {
   v1::ComputingCost cost;
   cost.set_cpu_ms(sum.times.total * kMillisecondPerSecond);
   cost.set_element_cpu_ms(sum.times.element * kMillisecondPerSecond);
@@ -221,7 +221,7 @@ v1::SeriesRow to_series_row(const SeriesEntry& entry) {
   row.set_ligament_tension_n(step.ligament_tension);
   row.set_broken_ligament_points(static_cast<uint32_t>(step.broken_ligament_points));
   row.set_closed_cells(static_cast<uint32_t>(step.closed_cells));
-  step::CostSum cost;
+  mechanics::CostSum cost;
   cost.add(step.cost);
   *row.mutable_cost() = to_computing_cost(cost);
   return row;

@@ -18,7 +18,7 @@ v1::ModelReport to_model_report(const model::FaceModel& model);
 v1::ScanReport to_scan_report(const geometry::SurfaceMesh& mesh, const geometry::SurfaceCheck& check);
 v1::Summary to_summary(const SessionView& view);
 v1::SeriesRow to_series_row(const SeriesEntry& entry);
-v1::ComputingCost to_computing_cost(const step::CostSum& sum);
+v1::ComputingCost to_computing_cost(const mechanics::CostSum& sum);
 v1::DistanceStatistics to_distance_statistics(const geometry::DistanceStatistics& statistics);
 v1::Simulation::State to_state(SimulationState state);
 

@@ -7,8 +7,8 @@
 namespace lipofill::bench {
 namespace {
 
-using step::StepCost;
-using step::StepTimes;
+using mechanics::StepCost;
+using mechanics::StepTimes;
 
 constexpr std::array<std::pair<const char*, double StepTimes::*>, 5> kPhases = {{{"element", &StepTimes::element},
                                                                                  {"factor", &StepTimes::factor},

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/step/step_cost.h"
+#include "core/mechanics/step_cost.h"
 #include "tests/bench/measure.h"
 
 namespace lipofill::bench {
@@ -10,7 +10,7 @@ namespace lipofill::bench {
 /// What steps say of themselves: time by phase, and what was done how often.
 class StepCosts {
  public:
-  void add(const step::StepCost& cost);
+  void add(const mechanics::StepCost& cost);
   void add(const StepCosts& others);
 
   /// {"times": {"element": ..., ...}, "per_step": {"factorisations": ..., ...}}
@@ -19,7 +19,7 @@ class StepCosts {
  private:
   PhaseSamples times_;
   int steps_ = 0;
-  step::StepCost sum_;
+  mechanics::StepCost sum_;
 };
 
 }  // namespace lipofill::bench

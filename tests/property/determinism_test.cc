@@ -25,7 +25,7 @@ std::string hash_after(Simulation& simulation, int steps) {
 
 plan::SimulationSpec plan_with_everything(plan::CouplingMode coupling) {
   plan::SimulationSpec spec = make_small_plan();
-  spec.films[0].zones = {{"left", ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", ChartBox{0.5, 1.0, 0.0, 1.0}}};
+  spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", geometry::ChartBox{0.5, 1.0, 0.0, 1.0}}};
   spec.injections = {{"left", 0.1e-6, 1e-6, std::nullopt, std::nullopt},
                      {"right", 0.1e-6, 2e-6, std::nullopt, geometry::ChartPoint{0.7, 0.5}}};
   spec.coupling = coupling;
@@ -61,7 +61,7 @@ std::string hash_of_a_square_of_its_own() {
   face.region = geometry::SquareSpec{0.04, 0.04};
   face.n_xi = face.n_eta = 8;
   plan::SimulationSpec spec = make_small_plan();
-  spec.films[0].extent = ChartBox{0.125, 0.875, 0.125, 0.875};
+  spec.films[0].extent = geometry::ChartBox{0.125, 0.875, 0.125, 0.875};
   spec.films[0].n_xi = spec.films[0].n_eta = 3;
   spec.injections = {{"all", 0.05e-6, 0.1e-6, 0.0, std::nullopt}};
   spec.probes.clear();

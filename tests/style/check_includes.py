@@ -36,7 +36,7 @@ ALLOWED = {
     "server/patients": {"core", "proto", "grpc", "server"},
     "server/simulations": {"core", "proto", "grpc", "server"},
     "server/frames": {"core", "proto", "grpc", "server"},
-    "server": {"core/base", "server"},
+    "server": {"core/base", "core/coupling", "server"},
     "client": {"proto", "grpc", "client"},
 }
 

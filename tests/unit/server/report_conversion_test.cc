@@ -82,7 +82,7 @@ TEST(ReportConversion, SeriesRowsAreInTheUnitsOfTheirNames) {
 }
 
 TEST(ReportConversion, CostsOfStepsAreInMillisecondsAndAddUp) {
-  step::StepCost step;
+  mechanics::StepCost step;
   step.times = {0.001, 0.002, 0.003, 0.004, 0.005, 0.016};
   step.factorisations = 1;
   step.tissue_solves = 2;

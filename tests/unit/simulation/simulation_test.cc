@@ -45,7 +45,7 @@ TEST(SimulationRun, LumpedKeepsTheTotalVolume) {
 
 TEST(SimulationRun, ZonesAreSealedFromEachOther) {
   plan::SimulationSpec spec = make_small_plan();
-  spec.films[0].zones = {{"left", ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", ChartBox{0.5, 1.0, 0.0, 1.0}}};
+  spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", geometry::ChartBox{0.5, 1.0, 0.0, 1.0}}};
   spec.injections = {{"left", 0.2e-6, 1e-6, std::nullopt, std::nullopt}};
   const auto simulation = make_small_simulation(spec);
   const double before = simulation->zone_reports()[1].volume;
@@ -56,7 +56,7 @@ TEST(SimulationRun, ZonesAreSealedFromEachOther) {
 
 TEST(SimulationRun, PaintedZoneIsThatOfItsCells) {
   plan::SimulationSpec boxed = make_small_plan();
-  boxed.films[0].zones = {{"all", ChartBox{0.0, 0.5, 0.0, 1.0}}};
+  boxed.films[0].zones = {{"all", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}}};
   boxed.injections[0].site = geometry::ChartPoint{0.25, 0.45};
   boxed.probes.clear();
   plan::SimulationSpec painted = boxed;
@@ -100,7 +100,7 @@ plan::SimulationSpec make_impossible_plan() {
   film.wall = plan::FilmWallKind::kRigid;
   film.rest_thickness = geometry::ScalarField::constant(1e-3);
   film.n_xi = film.n_eta = 4;
-  film.zones = {{"all", ChartBox{}}};
+  film.zones = {{"all", geometry::ChartBox{}}};
   spec.films = {film};
   spec.injections = {{"all", 0.1e-6, 1e-6, 0.05, std::nullopt}};
   return spec;
@@ -155,7 +155,7 @@ TEST(SimulationRun, TwoFilmsInOnePlan) {
   plan::FilmSpec deep = spec.films[0];
   deep.name = "deep";
   deep.below_layer = "smas";
-  deep.zones = {{"below", ChartBox{}}};
+  deep.zones = {{"below", geometry::ChartBox{}}};
   spec.films.push_back(deep);
   spec.settle_skin_speed = 0.0;
   spec.injections = {{"all", 0.1e-6, 1e-6, 0.0, std::nullopt}, {"below", 0.2e-6, 1e-6, 0.0, std::nullopt}};
@@ -192,7 +192,7 @@ TEST(SimulationFrames, MatchTheirTopologyAndTheReport) {
 
 TEST(SimulationFrames, NumberTheZonesUnderTheSkin) {
   plan::SimulationSpec spec = make_small_plan();
-  spec.films[0].zones = {{"left", ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", ChartBox{0.5, 1.0, 0.0, 0.5}}};
+  spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", geometry::ChartBox{0.5, 1.0, 0.0, 0.5}}};
   spec.injections[0].zone = "left";
   spec.injections[0].site.reset();
   spec.probes.clear();

@@ -1,12 +1,12 @@
 // Where a step starts, against what it promises: errors that a late factor leaves do not grow.
 
-#include "core/step/step_start.h"
+#include "core/step/predictor.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace lipofill::simulation {
+namespace lipofill::step {
 namespace {
 
 constexpr double kStep = 0.01;
@@ -38,7 +38,7 @@ double error_after_many_steps(double rho) {
   double largest = 0.0;
   for (int step = 1; step < 500; ++step) {
     Eigen::Matrix3Xd start;
-    step::predict_positions(state, kStep, start);
+    Predictor::predict_positions(state, kStep, start);
     accept(rho * start, kStep, state);
     if (step >= 400) largest = std::max(largest, state.positions.cwiseAbs().maxCoeff());
   }
@@ -60,8 +60,8 @@ TEST(StepStart, TheLastVelocityAloneWouldLetThemGrow) {
 }
 
 TEST(StepStart, SharesAddUpToOneAndCancelASignThatAlternates) {
-  EXPECT_EQ(step::kStartShares[0] + step::kStartShares[1] + step::kStartShares[2] + step::kStartShares[3], 1.0);
-  EXPECT_EQ(step::kStartShares[0] - step::kStartShares[1] + step::kStartShares[2] - step::kStartShares[3], 0.0);
+  EXPECT_EQ(kStartShares[0] + kStartShares[1] + kStartShares[2] + kStartShares[3], 1.0);
+  EXPECT_EQ(kStartShares[0] - kStartShares[1] + kStartShares[2] - kStartShares[3], 0.0);
 }
 
 /// Shares of velocities 1, 2, 3, 4 steps back: an acceleration is followed better than by the last one, whose lag is 1.
@@ -69,7 +69,7 @@ TEST(StepStart, FollowsAnAccelerationBetterThanTheLastVelocity) {
   mechanics::SimulationState state = at_rest();
   for (int step = 1; step <= 10; ++step) accept(Eigen::Matrix3Xd::Constant(3, 1, step * step), kStep, state);
   Eigen::Matrix3Xd start;
-  step::predict_positions(state, kStep, start);
+  Predictor::predict_positions(state, kStep, start);
   const double last_velocity = 2.0 * 100.0 - 81.0;
   EXPECT_NEAR(121.0 - start(0, 0), 0.75 * (121.0 - last_velocity), 1e-9);
 }
@@ -78,15 +78,15 @@ TEST(StepStart, AfterStepsOfOtherSizesTheLastVelocityLeads) {
   mechanics::SimulationState state = at_rest();
   for (int step = 1; step <= 10; ++step) accept(Eigen::Matrix3Xd::Constant(3, 1, step * step), kStep, state);
   Eigen::Matrix3Xd start;
-  step::predict_positions(state, 2.0 * kStep, start);
+  Predictor::predict_positions(state, 2.0 * kStep, start);
   EXPECT_NEAR(start(0, 0), 100.0 + 2.0 * 19.0, 1e-9);
   accept(Eigen::Matrix3Xd::Constant(3, 1, 140.0), 2.0 * kStep, state);
   for (int k = 1; k < 4; ++k) {
-    step::predict_positions(state, 2.0 * kStep, start);
+    Predictor::predict_positions(state, 2.0 * kStep, start);
     EXPECT_NEAR(start(0, 0), 140.0 + 40.0 * k, 1e-9);
     accept(start, 2.0 * kStep, state);
   }
 }
 
 }  // namespace
-}  // namespace lipofill::simulation
+}  // namespace lipofill::step

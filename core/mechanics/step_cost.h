@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <ctime>
 
-namespace lipofill::step {
+namespace lipofill::mechanics {
 
 /// CPU time of a step by phase [s], on its thread, tries that were taken back included: what it costs, however busy the
 /// machine. What is left of the total is bookkeeping.
@@ -75,4 +75,4 @@ class PhaseTimer {
   double start_;
 };
 
-}  // namespace lipofill::step
+}  // namespace lipofill::mechanics

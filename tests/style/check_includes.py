@@ -2,8 +2,8 @@
 """Checks that includes follow the layout: dependencies between folders point one way.
 
     core/base <- geometry <- {solid, film, anatomy} <- coupling <- model <- plan <- mechanics <- step <- simulation <- export,
-    then server on core and proto, client on proto alone;
-    only server/rpc sees both proto and core; core sees neither gRPC nor Protobuf.
+    then server on core and proto, client on proto alone; in the server only wire, entry, backend, patients, simulations
+    and frames see both proto and core; core sees neither gRPC nor Protobuf.
 
 Exit code 1 and a line a breach when they do not.
 """

@@ -17,7 +17,7 @@ namespace lipofill::client {
 
 using Action = std::function<absl::StatusOr<ExitCode>()>;
 
-/// What all commands share: the options every one has, the connection, the ways to answer.
+/// The part that all commands share: the options every one has, the connection, the ways to answer.
 class Application {
  public:
   std::string server = default_server();

@@ -38,7 +38,8 @@ absl::Status run_drawing(const std::vector<std::string>& command) {
   const std::string text = read_text_file(log).value_or("");
   const std::string message =
       absl::StrCat("the picture could not be drawn (exit code ", *code, ")", text.empty() ? "" : ": ", text);
-  // What the drawing process refuses is the input; what ends it otherwise is the screen.
+  // An error that the drawing process reports is in the input; anything else that ends it is due to
+  // the screen.
   return *code == 2 ? absl::InvalidArgumentError(message) : absl::FailedPreconditionError(message);
 }
 

@@ -55,7 +55,8 @@ absl::Status draw_here(const Options& options) {
   return draw_result_picture(request);
 }
 
-/// Of a simulation by its name: its final state is fetched into a folder that goes again.
+/// Draws a simulation by its name: fetches its final state into a folder that is removed
+/// afterwards.
 absl::Status draw_simulation(Application& application, const Options& options) {
   if (options.out.empty())
     return absl::InvalidArgumentError("--out FILE.png is needed to draw a simulation by its name");

@@ -72,7 +72,7 @@ absl::Status Run::simulate() {
   }
   if (application_.interrupt().requested()) {
     stop_simulation();
-    // What it had reached is worth keeping.
+    // The state it had reached is worth keeping.
     const Connection last_words = connection_->without_stop();
     if (auto state = get_simulation(last_words, simulation_.name()); state.ok()) simulation_ = *std::move(state);
     (void)fetch_series(last_words, simulation_.name(), &rows_);

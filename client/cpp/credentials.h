@@ -23,7 +23,7 @@ struct CredentialFiles {
 /// LIPOFILL_TOKEN_FILE, LIPOFILL_TLS_CA, LIPOFILL_TLS_CERT and LIPOFILL_TLS_KEY, where they are set.
 CredentialFiles credential_files_of_environment();
 
-/// What was in the files.
+/// Content of the credential files.
 struct Credentials {
   std::string token_file;
   std::string ca_pem;

@@ -20,7 +20,7 @@ std::string summary_text(const std::string& plan, const v1::Simulation& simulati
 /// same value.
 std::string series_csv(const v1::SimulationSpec& spec, const std::vector<v1::SeriesRow>& rows);
 
-/// What came of a preview, in a line.
+/// The outcome of a preview, in a line.
 std::string preview_text(const v1::PreviewSummary& preview);
 
 /// One line about where a simulation is.

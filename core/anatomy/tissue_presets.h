@@ -10,7 +10,7 @@ namespace lipofill::anatomy {
 /// Tissue a layer of the face is made of.
 enum class TissueKind { kSkin, kSubcutaneous, kSmas, kMuscle };
 
-/// Whose moduli are used.
+/// The source of the moduli.
 enum class TissuePreset { kPaper, kElastography };
 
 struct TissueFigures {

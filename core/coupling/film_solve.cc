@@ -15,7 +15,8 @@ constexpr int kMaxIterations = 60;
 constexpr int kMaxTurns = 2;
 constexpr int kUndampedIterations = 20;
 
-/// Of the fullest cell's volume: a cell that holds no less than minus this is empty.
+/// Rounding error of a volume, as a share of the fullest cell's: a cell that holds no less than
+/// minus this is empty.
 constexpr double kRoundOff = 1e-10;
 
 constexpr int kMaxNewtonIterations = 60;
@@ -23,7 +24,7 @@ constexpr int kMaxLineSearch = 30;
 /// While the thickness is still far from settled, pressures need not be better than this share of its change.
 constexpr double kEarlyShare = 1e-3;
 constexpr double kEarlyTolerance = 1e-6;
-/// What conjugate gradients leave of the mismatch that is allowed.
+/// Share of the allowed mismatch that conjugate gradients may leave.
 constexpr double kIterativeShare = 0.2;
 /// A step along Newton's direction is taken once it has used up this share of the descent.
 constexpr double kSlopeShare = 0.8;
@@ -107,7 +108,8 @@ void FilmSolver::solve(const Eigen::VectorXd& gap_without_pressure, const Eigen:
   }
 }
 
-/// With C p made anew: solves of many cells only follow how it changes.
+/// True when the mismatch is within the tolerance with C p computed anew: solves of many cells only
+/// update it by its changes.
 bool FilmSolver::is_exact(double tolerance, FilmSolution& solution) {
   if (!solver_.is_lagged()) return true;
   solver_.multiply_walls(solution.pressure, moved_);

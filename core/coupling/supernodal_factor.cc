@@ -139,7 +139,7 @@ void SupernodalFactor<Scalar>::compute_compliance(Eigen::MatrixXd& compliance) {
   }
 }
 
-/// Of a supernode with few pressures.
+/// Adds the square of a supernode with few pressures.
 template <typename Scalar>
 void SupernodalFactor<Scalar>::add_square(const Supernode& node) {
   const int n = node.n_rows - node.n_tissue_rows;

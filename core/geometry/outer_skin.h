@@ -17,8 +17,9 @@ namespace lipofill::geometry {
 std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across, const RayTree& rays,
                                   const std::vector<int>& candidates);
 
-/// Whether the surface is turned inside out: where it reaches farthest in a direction its normal must look that way, by
-/// the sum over 98 directions. Inner surfaces reach nowhere farthest, so that they have no say.
+/// True when the surface is turned inside out: where it reaches farthest in a direction its normal
+/// must point that way, by the sum over 98 directions. Inner surfaces reach nowhere farthest, so
+/// that they have no say.
 bool is_inside_out(const SurfaceMesh& mesh);
 
 }  // namespace lipofill::geometry

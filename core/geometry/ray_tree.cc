@@ -138,8 +138,9 @@ struct RayTree::Ray {
     }
   }
 
-  /// Where the ray enters each box; infinity where it does not meet the box within `reach`. A ray within a slab's plane
-  /// multiplies 0 by infinity: comparisons with the not-a-number that gives are false, and the slab is passed over.
+  /// Distance at which the ray enters each box; infinity when it does not meet the box within
+  /// `reach`. A ray within a slab's plane multiplies 0 by infinity: comparisons with the
+  /// not-a-number that gives are false, and the slab is passed over.
   Lanes enter(const Node& node, double reach) const {
     Lanes enter{};
     Lanes leave = fill_lanes(reach);

@@ -16,7 +16,7 @@ class RayTree {
  public:
   explicit RayTree(const SurfaceMesh& mesh);
 
-  /// Whether the ray from a point meets the surface anywhere.
+  /// True when the ray from a point meets the surface anywhere.
   bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const;
 
   /// Distance to where the ray first meets the surface, in lengths of `direction`; infinity where it does not, up to

@@ -20,7 +20,7 @@ std::string counted(size_t n, const char* singular, const char* plural) {
   return absl::StrCat(n, " ", n == 1 ? singular : plural);
 }
 
-/// For each vertex the first one at its place, on a lattice of a micrometre.
+/// Returns for each vertex the first one at its place, on a lattice of a micrometre.
 std::vector<int> find_first_at_place(const SurfaceMesh& mesh) {
   using Cell = std::array<int64_t, 3>;
   std::vector<std::pair<Cell, int>> places(mesh.n_vertices());
@@ -151,7 +151,8 @@ void drop_specks(SurfaceMesh& mesh, std::vector<std::string>& remarks) {
                                  counted(dropped, "triangle", "triangles"), ") left out."));
 }
 
-/// Whether the triangles beside side k of t run along it the same way, so that one of them must be turned.
+/// True when the triangles beside side k of t run along it the same way, so that one of them must
+/// be turned.
 bool disagree(const SurfaceMesh& mesh, int t, int k, int neighbour) {
   const int from = mesh.triangles[t][k];
   const int to = mesh.triangles[t][(k + 1) % 3];

@@ -23,7 +23,7 @@ std::vector<double> compute_signed_distances(const Eigen::Matrix3Xd& points, con
 absl::StatusOr<std::vector<double>> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface,
                                                              const Unwanted& unwanted);
 
-/// Of the absolute values. All zero for no values.
+/// Computes the statistics of the absolute values. All zero for no values.
 DistanceStatistics compute_distance_statistics(const std::vector<double>& distances);
 
 /// How far a patch of one surface is from another surface, both ways.

@@ -16,7 +16,7 @@ namespace {
 constexpr double kPascalPerKilopascal = 1e3;
 /// Pa/m in a kPa/mm.
 constexpr double kStiffnessUnit = 1e6;
-/// Of the work of building, the part before the layers.
+/// Share of the building work that comes before the layers.
 constexpr double kSkinFraction = 0.9;
 
 void check_layer(const TissueLayerSpec& layer, const std::string& field, FieldViolations& violations) {
@@ -114,7 +114,8 @@ absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec, con
   });
 }
 
-/// Where the bone makes the layers fold, the caller can do more than with layers of a thickness of their own.
+/// Adds advice to the error when layers fold and their thickness follows the bone: the caller then
+/// has two more parameters to change.
 absl::Status with_advice(const absl::Status& status, const LayerThickness& thickness) {
   if (!absl::IsFailedPrecondition(status) || !thickness.bone) return status;
   return absl::FailedPreconditionError(absl::StrCat(
@@ -126,7 +127,7 @@ absl::Status with_advice(const absl::Status& status, const LayerThickness& thick
 absl::Status check_face_model(const FaceModelSpec& spec) {
   const bool is_square = std::holds_alternative<geometry::SquareSpec>(spec.region);
   FieldViolations violations;
-  if (spec.layers.empty() && !is_square) violations.add("layers", "are none, a scan needs at least 1");
+  if (spec.layers.empty() && !is_square) violations.add("layers", "there are none; a scan needs at least 1");
   std::set<std::string> names;
   for (size_t l = 0; l < spec.layers.size(); ++l) {
     const std::string field = absl::StrCat("layers[", l, "]");

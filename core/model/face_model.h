@@ -55,7 +55,7 @@ struct ThicknessRange {
   double max = 0.0;
 };
 
-/// What was found of the bone; shares are of the nodes of the chart.
+/// How much of the bone was found; shares are of the nodes of the chart.
 struct BoneFinding {
   double measured_share = 0.0;  ///< where a ray met bone
   double limited_share = 0.0;   ///< where the layer ends above the bone, at its greatest thickness

@@ -26,7 +26,8 @@ class InjectionSchedule {
   void deliver(const std::vector<FilmLayout>& films, absl::FunctionRef<double(int film, int cell)> held, double time,
                double dt, std::vector<Eigen::VectorXd>& received);
 
-  /// What is due by `time` and not delivered: more was to be taken out than was there [m3], negative or 0.
+  /// Volume due by `time` but not delivered, because more was to be taken out than was there [m3];
+  /// negative or 0.
   double undelivered(double time) const;
 
   /// Sum of all that has been delivered [m3].

@@ -77,7 +77,7 @@ absl::Status check_plan(const SimulationSpec& spec) {
   violations.check_range("damping.mass_per_s", spec.damping_mass, 0.0, 1e6, "1/s");
   violations.check_range("damping.stiffness_s", spec.damping_stiffness, 0.0, 1e3, "s");
   violations.check_range("gravity_m_s2", spec.gravity.norm(), 0.0, 1000.0, "m/s2");
-  if (spec.films.empty()) violations.add("films", "are none, must be at least 1");
+  if (spec.films.empty()) violations.add("films", "there are none; at least 1 is needed");
   check_count("films", spec.films.size(), kMaxFilms, violations);
   check_count("injections", spec.injections.size(), kMaxInjections, violations);
   check_count("probes", spec.probes.size(), kMaxProbes, violations);

@@ -34,7 +34,7 @@ struct BackendOptions {
   CheckpointOptions checkpoints;
 };
 
-/// What the services share.
+/// Everything that the services share.
 struct Backend {
   Backend(const BackendOptions& the_options, Store& the_store, ScanFiles& scans, CheckpointFiles& checkpoints,
           Metrics& the_metrics)

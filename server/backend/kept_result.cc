@@ -19,7 +19,7 @@ std::string make_key(const SimulationResult& result, const Selection& selection)
                       absl::StrJoin(selection.fields, "\n"), selection.quantised ? "\n\nuint16" : "");
 }
 
-/// What was asked for, with every name checked against what there is.
+/// Returns the selection asked for; checks every name in it against those there are.
 absl::StatusOr<Selection> choose(const v1::MeshSlice& meshes, const v1::FrameSlice& frame,
                                  const ViewerOptions& options) {
   Topology known;

@@ -11,7 +11,8 @@
 
 namespace lipofill::server {
 
-/// Whether a simulation was parked: READY or PAUSED, kept on disk alone. Its summary is in the record then.
+/// True when a simulation is parked: READY or PAUSED, kept on disk alone. Its summary is in the
+/// record then.
 bool is_parked(const SimulationRecord& record);
 
 /// The session of a simulation, held; one that was parked is woken for it, which takes as long as building its model

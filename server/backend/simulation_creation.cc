@@ -40,7 +40,7 @@ absl::StatusOr<SimulationRecord> read_request(const Principal& caller, const v1:
   return record;
 }
 
-/// What a simulation that is only to be checked would be when it is created.
+/// Shows a simulation that is only to be checked as it would be once created.
 absl::StatusOr<v1::Simulation> show_checked(Backend& backend, const SimulationRecord& record,
                                             const v1::SimulationSpec& spec,
                                             std::unique_ptr<simulation::Simulation> simulation) {

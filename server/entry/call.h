@@ -16,7 +16,8 @@ namespace lipofill::server {
 
 class CallGate;
 
-/// What the daemon knows of a call: at first what comes with it, then what its request is about.
+/// Everything the daemon knows of a call: at first its metadata, then also the resources its
+/// request names.
 struct Call {
   std::string method;      ///< "/lipofill.v1.PatientService/GetPatient"
   std::string request_id;  ///< the client's x-request-id, or one that was made for it
@@ -30,7 +31,7 @@ struct Call {
   std::string made = {};                    ///< the name of what it made
   bool begun = false;                       ///< the audit log has it
 
-  /// What lines of the log say of it.
+  /// The fields that lines of the log say of the call.
   LogFields log_fields() const;
 };
 
@@ -47,7 +48,7 @@ class CallContext : public grpc::CallbackServerContext {
   const std::shared_ptr<Call> call = std::make_shared<Call>();
 };
 
-/// What is known of the call.
+/// Returns the Call that belongs to the context.
 Call& call_of(grpc::CallbackServerContext* context);
 
 /// gRPC gives contexts back through the base class whoever made them, also those of calls to methods there are not

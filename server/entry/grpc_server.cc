@@ -23,7 +23,7 @@
 namespace lipofill::server {
 namespace {
 
-/// Of the time to drain, for calls under way; the rest is for work that was begun.
+/// Share of the time to drain that calls under way may take; the rest is for work that was begun.
 constexpr double kShareForCalls = 0.25;
 constexpr GrpcServer::Seconds kMaxForCalls{5.0};
 constexpr GrpcServer::Seconds kToCutOff{1.0};
@@ -69,7 +69,7 @@ absl::Status cannot_listen(const std::string& address) {
                    is_unix(address) ? ": may this user make files in its directory?" : ": is the port taken?"));
 }
 
-/// For the daemon's user and group.
+/// Restricts UNIX sockets to the daemon's user and group.
 void restrict_sockets(const std::vector<std::string>& addresses) {
   for (const std::string& address : addresses) {
     if (!is_unix(address)) continue;

@@ -35,7 +35,7 @@ class GrpcServer {
   static absl::StatusOr<std::unique_ptr<GrpcServer>> start(const std::vector<std::string>& addresses,
                                                            const ServiceGuard& guard, Backend& backend);
 
-  /// Of the first address on TCP; 0 when there is none.
+  /// Port of the first address on TCP; 0 when there is none.
   int port() const { return port_; }
 
   using Seconds = std::chrono::duration<double>;

@@ -36,7 +36,8 @@ class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<
   absl::Status watch_kept(const v1::WatchRequest& request, const std::string& id,
                           const std::shared_ptr<WatchStream>& stream);
 
-  /// Of the bounded number of streams, held while one is open; nullptr when there is none left.
+  /// Takes a place among the bounded number of streams, held while the stream is open; nullptr when
+  /// there is none left.
   std::shared_ptr<void> take_place();
 
   Backend& backend_;

@@ -7,7 +7,7 @@
 
 namespace lipofill::server {
 
-/// Where to listen: a TCP port, or a UNIX socket.
+/// An address to listen on: a TCP port, or a UNIX socket.
 struct ListenAddress {
   std::string host;       ///< empty for a UNIX socket
   int port = 0;           ///< 0: a free one

@@ -120,7 +120,7 @@ absl::StatusOr<std::shared_ptr<AuditLog::File>> AuditLog::write(const AuditEntry
     is_torn_ = false;
     return file_;
   }
-  // What is there stays, and the next line carries on from it.
+  // The part that was written stays, and the next line follows it.
   const absl::Status error = cannot("write", path_);
   if (written > before.size()) {
     head_.hash = hash_of_line(line.substr(0, written - before.size()));

@@ -8,7 +8,7 @@
 
 namespace lipofill::server {
 
-/// What somebody may do. Each role may do what those before it may.
+/// The rights of a caller. Each role may do everything that those before it may.
 enum class Role {
   kNone,     ///< is known, and may do nothing
   kViewer,   ///< looks
@@ -24,7 +24,8 @@ Role role_of(const std::string& word);
 /// "{tenant}-" is one tenant's alone.
 bool is_tenant(const std::string& text);
 
-/// Who calls. By default the user of this machine, to whom a daemon without authentication belongs.
+/// The caller. By default it is the user of this machine, to whom a daemon without authentication
+/// belongs.
 struct Principal {
   using Clock = std::chrono::system_clock;
 

@@ -17,7 +17,7 @@ inline absl::Status permission_denied(const std::string& reason, const std::stri
   return with_hints(absl::PermissionDeniedError(message), {reason, {}});
 }
 
-/// For what goes on longer than the token by which it began.
+/// Ends a call that goes on longer than the token with which it began.
 inline absl::Status token_expired() {
   return unauthenticated("TOKEN_EXPIRED", "the token has expired; call again with a new one");
 }

@@ -6,7 +6,8 @@
 
 namespace lipofill::server {
 
-/// What of a frame a viewer is shown, and how. Viewers of equal selections share one encoding.
+/// The parts of a frame that a viewer is shown, and their encoding. Viewers of equal selections
+/// share one encoding.
 struct Selection {
   std::vector<std::string> meshes;
   std::vector<std::string> fields = {};  ///< "<mesh>.<field>"; empty: all of the meshes

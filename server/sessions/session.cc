@@ -138,7 +138,7 @@ WorkerPool::Next Session::take_turn() {
   return next;
 }
 
-/// Whether there is a step to take, now or when its time comes.
+/// True when there is a step to take, now or when its time comes.
 bool Session::takes_steps() const {
   return simulation_ != nullptr && !suspended_ && (catching_up_ || view_.state == SimulationState::kRunning);
 }
@@ -206,7 +206,7 @@ void Session::finish(SimulationState state, const std::string& reason) {
   let_go();
 }
 
-/// Of all that only a simulation that has not ended needs.
+/// Releases everything that only a simulation that has not ended needs.
 void Session::let_go() {
   viewers_.clear();
   simulation_ = nullptr;

@@ -42,8 +42,8 @@ struct RestoreOrder {
   std::string spec_message;
 };
 
-/// What was acknowledged before the daemon was started again, as far as it is not in the state the session goes on
-/// from. Commands take effect after the same steps as the first time.
+/// The commands acknowledged before the daemon was started again that are not yet in the state the
+/// session goes on from. They take effect after the same steps as the first time.
 struct SessionHistory {
   SimulationState state = SimulationState::kReady;
   double wall_s = 0.0;  ///< spent RUNNING
@@ -88,7 +88,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   void resume(RequestKey request, Reply reply);
   void stop(std::string reason, RequestKey request, Reply reply);
   void inject(InjectionOrder order, RequestKey request, Reply reply);
-  /// What inject() would add, or why it would not.
+  /// Returns the injection that inject() would add, or the reason why it would not.
   using InjectionReply = std::function<void(absl::StatusOr<plan::InjectionSpec>)>;
   void foresee(InjectionOrder order, InjectionReply reply);
   void restore(RestoreOrder order, RequestKey request, Reply reply);
@@ -103,7 +103,8 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   /// Keeps the present state, unless it is kept already or can be had at no cost.
   using Done = std::function<void(absl::Status)>;
   void save(Done done);
-  /// For the end of the daemon: no step and no command any more, the state kept.
+  /// Suspends the session when the daemon ends: it keeps its state and takes no step and no command
+  /// any more.
   void suspend(Done done);
 
   /// How long nothing was asked of it but figures; 0 while it runs, is watched, is held or catches up. Without waiting.

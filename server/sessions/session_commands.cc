@@ -1,4 +1,4 @@
-// What clients ask of a session.
+// The commands that clients give a session.
 
 #include <algorithm>
 #include <exception>

@@ -1,4 +1,5 @@
-// What is known of a session: its view between two steps, and the rows of its series on their way to the sink.
+// The figures of a session: its view between two steps, and the rows of its series on their way to
+// the sink.
 
 #include <algorithm>
 #include <iterator>

@@ -1,5 +1,6 @@
-// What a session does before its first step where a preview is asked for: the settled shape of a coarse model, a step
-// at a time between commands as its own steps are, shown to viewers and in the end compared with the result.
+// The preview of a session, made before its first step if one is asked for: the settled shape of a
+// coarse model. It takes a step at a time between commands as the session's own steps do, is shown
+// to viewers and in the end compared with the result.
 
 #include <exception>
 

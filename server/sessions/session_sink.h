@@ -56,13 +56,14 @@ struct SessionView {
   int viewers = 0;
 };
 
-/// Where a session leaves what must last. Called on whichever thread runs the session, between steps; what returns OK
-/// is on the medium.
+/// Durable storage of a session. It is called on whichever thread runs the session, between steps;
+/// anything for which it returns OK is on the medium.
 class SessionSink {
  public:
   virtual ~SessionSink() = default;
 
-  /// Whether an equal request was kept before. INVALID_ARGUMENT when its id stands for another one.
+  /// True when an equal request was kept before. INVALID_ARGUMENT when its id stands for another
+  /// one.
   virtual absl::StatusOr<bool> was_kept(const RequestKey& request) = 0;
   /// Before the command takes effect. False: an equal request was kept before, and this one is not.
   virtual absl::StatusOr<bool> keep_command(const CommandRecord& command, const RequestKey& request) = 0;

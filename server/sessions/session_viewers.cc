@@ -1,4 +1,4 @@
-// What a session shows: its meshes, and frames to whoever watches.
+// The viewers of a session: the meshes it shows, and frames for everyone who watches.
 
 #include <algorithm>
 #include <exception>

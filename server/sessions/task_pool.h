@@ -21,7 +21,7 @@ class TaskPool {
   [[nodiscard]] bool run(std::function<void()> work, std::string label = "");
   /// Carries out what is queued (whoever waits for an answer gets one), then joins. Idempotent.
   void stop();
-  /// What waits now.
+  /// Number of tasks that wait now.
   size_t queue_depth() const;
   /// Place in the queue of what was given this label: 1 is the next; 0: it does not wait.
   size_t position(const std::string& label) const;

@@ -26,7 +26,7 @@ class WorkerPool {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// What a task wants after its turn.
+  /// The wish of a task after its turn: nothing, another turn at once, or one later.
   struct Next {
     enum Kind { kNothing, kAgain, kLater } kind = kNothing;
     Clock::time_point when = {};  ///< kLater

@@ -51,7 +51,7 @@ class Staging {
   fs::path file(const std::string& path) const { return root_ / path; }
 
  private:
-  /// What backups that did not end well left.
+  /// Removes the files of backups that did not finish.
   static void sweep(const fs::path& data) {
     std::error_code error;
     std::vector<fs::path> left;
@@ -81,7 +81,8 @@ absl::StatusOr<std::vector<std::string>> files_of(Database& database) {
   return paths;
 }
 
-/// With the daemon's writes held up, so that no file goes whose record is in the reader's view of the database.
+/// Links the files with the daemon's writes held up, so that no file goes whose record is in the
+/// reader's view of the database.
 absl::Status link_files(Database& writer, Database& reader, const fs::path& data, Staging& staging) {
   const Transaction hold(writer);
   if (!hold.status().ok()) return hold.status();

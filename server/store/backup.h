@@ -10,7 +10,7 @@
 
 namespace lipofill::server {
 
-/// What a backup or a restore copied.
+/// The amount that a backup or a restore copied.
 struct BackupReport {
   int files = 0;
   uint64_t bytes = 0;

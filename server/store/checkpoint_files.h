@@ -11,7 +11,7 @@
 
 namespace lipofill::server {
 
-/// What a checkpoint's file holds: all that a simulation goes on from, given its model.
+/// Content of a checkpoint's file: everything that a simulation needs to go on, besides its model.
 struct CheckpointContent {
   std::string simulation;    ///< id
   uint64_t step = 0;         ///< of the state

@@ -9,7 +9,8 @@
 
 namespace lipofill::server {
 
-/// Whether an error number says that there is no room: a full disk, a quota, a limit on the size of files.
+/// True for error numbers that say that there is no room: a full disk, a quota, a limit on the size
+/// of files.
 bool is_out_of_space(int error_number);
 
 /// RESOURCE_EXHAUSTED when there is no room, else UNAVAILABLE: what could not be done, and why.

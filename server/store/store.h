@@ -24,7 +24,7 @@ class Store {
   /// Creates return the record now in the store: the one given, or the one an equal request made before.
   virtual absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) = 0;
   virtual absl::StatusOr<PatientRecord> get_patient(const std::string& id) = 0;
-  /// Of what the scope has.
+  /// Lists the patients within the scope.
   virtual absl::StatusOr<std::vector<PatientRecord>> list_patients(const Scope& scope, const Page& page) = 0;
   /// Replaces display name and labels by what `change` makes of the present record; nobody comes between. What `change`
   /// refuses is not done.
@@ -105,7 +105,8 @@ class Store {
   /// Forgets rows of the series after a step.
   virtual absl::Status cut_series(const std::string& id, uint64_t last_step) = 0;
 
-  /// Whose something is; of a simulation the patient of its model, which may have been deleted since.
+  /// The owner of a resource; for a simulation the patient of its model, which may have been
+  /// deleted since.
   virtual absl::StatusOr<Owner> owner_of_patient(const std::string& id) = 0;
   virtual absl::StatusOr<Owner> owner_of_simulation(const std::string& id) = 0;
 

@@ -18,7 +18,7 @@ absl::Status check_field_mask(const google::protobuf::FieldMask& mask, const goo
 /// Leaves of a message only what a mask that was checked names.
 void keep_masked(const google::protobuf::FieldMask& mask, google::protobuf::Message& message);
 
-/// Whether a mask that was checked names a field of the message itself.
+/// True when a mask that was checked names a field of the message itself.
 bool is_masked(const google::protobuf::FieldMask& mask, const std::string& path);
 
 /// Carries out a call with a read mask: checks it, does `read`, which fills the response, and leaves what is wanted of

@@ -27,7 +27,7 @@ absl::StatusOr<std::string> parse_simulation_name(const std::string& name, const
 absl::StatusOr<CheckpointParts> parse_checkpoint_name(const std::string& name, const std::string& field);
 absl::StatusOr<std::string> parse_operation_name(const std::string& name, const std::string& field);
 
-/// Whether a text matches [a-z][a-z0-9-]{0,62}.
+/// True when a text matches [a-z][a-z0-9-]{0,62}.
 bool is_id(const std::string& text);
 
 /// The id given, or a new one when it is empty. INVALID_ARGUMENT unless it matches [a-z][a-z0-9-]{0,62}.

@@ -11,7 +11,7 @@ using Colour = std::array<double, 3>;
 
 inline constexpr Colour kSkin = {0.87, 0.70, 0.60};
 inline constexpr Colour kInk = {0.12, 0.12, 0.14};
-/// Of a surface where there is nothing to show.
+/// Colour of a surface where there is nothing to show.
 inline constexpr Colour kNothing = {0.93, 0.91, 0.89};
 
 /// A range of settled pressure and what it is called. The bounds are assumed: the first is the critical interstitial

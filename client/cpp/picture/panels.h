@@ -34,7 +34,7 @@ struct Paint {
 /// A view of a surface in a part of the sheet. Precondition: the surface has point normals.
 vtkSmartPointer<vtkRenderer> panel(const Area& area, vtkPolyData* surface, const View& view, const Paint& paint);
 
-/// What is written and drawn over the panels.
+/// Text and lines drawn over the panels.
 class Overlay {
  public:
   Overlay();

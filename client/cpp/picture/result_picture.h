@@ -11,8 +11,9 @@
 
 namespace lipofill::client {
 
-/// What to draw of a surface that rode on a simulation: a .vtp with the point field "displacement_mm" and, as the
-/// picture needs them, "pressure_pa" and "thickness_mm", or "distance_mm".
+/// Describes how to draw a surface that rode on a simulation: a .vtp with the point field
+/// "displacement_mm" and, as the picture needs them, "pressure_pa" and "thickness_mm", or
+/// "distance_mm".
 struct PictureRequest {
   std::filesystem::path mesh;
   std::filesystem::path png;

@@ -58,7 +58,7 @@ int vtk_type_of(const std::string& type) {
   return found == types.end() ? 0 : found->second;
 }
 
-/// What one scalar a voxel, in binary, on a grid of three axes takes.
+/// Sets the layout of the voxels, which must be binary, one scalar each, on a grid of three axes.
 absl::Status set_voxels(const std::filesystem::path& file, const HeaderText& text, VolumeHeader* header) {
   const std::string dimensions = text.value("ndims");
   if (!dimensions.empty() && dimensions != "3")

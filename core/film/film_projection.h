@@ -28,7 +28,8 @@ struct FilmStepInput {
 
 /// The film's projection for a mobility given by a guess of the new thickness:
 ///
-///     F  = h_e U + law(rho b . dX - G p)    flux [m3/s], law of flow_law.h; k (p_l - p_r) through leaky walls
+///     F  = h_e U + law(rho b . dX - G p)    flux [m3/s], law of flow_law.h
+///     F  = k (p_l - p_r)                    through leaky walls
 ///     V' = V + injected + dt G^T F
 ///
 /// in flux form: what leaves a cell enters its neighbour, to the last bit but rounding. After the first step nothing is

@@ -66,7 +66,7 @@ BackendOptions backend_options(const Options& options) {
   return backend;
 }
 
-/// nullptr where none is asked for.
+/// Opens the audit log; nullptr when none is asked for.
 absl::StatusOr<std::unique_ptr<AuditLog>> open_audit_log(const Options& options) {
   const std::string path = options.security.audit_file_in(options.data);
   if (path.empty()) return nullptr;
@@ -134,7 +134,7 @@ absl::Status serve(const Options& options) {
   return served;
 }
 
-/// In place of serving: a backup or a restore, with a line of progress a second.
+/// Makes a backup or a restore in place of serving, with a line of progress a second.
 absl::Status copy_store(const Options& options) {
   using Clock = std::chrono::steady_clock;
   Clock::time_point told = Clock::now();

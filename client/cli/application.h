@@ -25,9 +25,9 @@ class Application {
   bool json = false;
   Action action;  ///< what the command line asks for
 
-  /// From here on Ctrl-C asks to stop instead of ending the program.
+  /// Makes Ctrl-C ask to stop, from here on, instead of ending the program.
   const Interrupt& interrupt();
-  /// Before anything connects: what the files of credentials hold.
+  /// Reads the files of credentials; to be called before anything connects.
   absl::Status read_credentials();
   Connection connect();
   /// `server` with the credentials; any other daemon, a private one, without.
@@ -54,7 +54,7 @@ CLI::App* add_local_command(CLI::App& parent, Application& application, const st
 /// A word that only holds further commands.
 CLI::App* add_group(CLI::App& parent, const std::string& name, const std::string& description);
 
-// One for each part of the command line.
+// Each of these adds one part of the command line.
 void add_run_command(CLI::App& root, Application& application);
 void add_plan_commands(CLI::App& root, Application& application);
 void add_patient_commands(CLI::App& root, Application& application);

@@ -21,7 +21,8 @@ bool has_display() {
   return display != nullptr && *display != '\0';
 }
 
-/// Before the drawing process writes what its libraries say of it.
+/// Checks that the picture can be written. This comes first, as the drawing process would write
+/// what its libraries say of it.
 absl::Status check_can_be_written(const std::filesystem::path& png) {
   const std::filesystem::path folder = png.has_parent_path() ? png.parent_path() : ".";
   if (::access(folder.c_str(), W_OK | X_OK) == 0) return absl::OkStatus();

@@ -90,7 +90,8 @@ absl::Status Run::start_and_follow(const std::stop_token& frames_ended) {
   request.set_name(simulation_.name());
   const auto started = connection_->call<SimulationService>(&SimulationService::Stub::StartSimulation, request);
   if (!started.ok()) {
-    // Without a start no frame ever comes: the taker is ended by deleting what it watches.
+    // No frame ever comes without a start: deleting the simulation ends the taker that waits for
+    // them.
     v1::DeleteSimulationRequest remove;
     remove.set_name(simulation_.name());
     (void)connection_->without_stop().call<SimulationService>(&SimulationService::Stub::DeleteSimulation, remove);
@@ -108,7 +109,7 @@ absl::Status Run::start_and_follow(const std::stop_token& frames_ended) {
   return absl::OkStatus();
 }
 
-/// Once, when the preview is there or has failed.
+/// Tells of the preview once, when it is there or has failed.
 void Run::tell_preview() {
   if (preview_told_ || !simulation_.spec().preview()) return;
   const auto simulation = get_simulation(*connection_, simulation_.name());
@@ -131,7 +132,7 @@ void Run::show_progress() {
 void Run::stop_simulation() {
   v1::StopSimulationRequest request;
   request.set_name(simulation_.name());
-  // One that has ended meanwhile refuses, which is as good.
+  // A simulation that has ended meanwhile refuses, which is just as good.
   (void)connection_->without_stop().call<SimulationService>(&SimulationService::Stub::StopSimulation, request,
                                                             std::chrono::seconds(10));
 }

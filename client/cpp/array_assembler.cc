@@ -56,7 +56,7 @@ std::optional<ArrayLocation> location_of(v1::ArrayLocation location) {
   }
 }
 
-/// One finite range a component.
+/// True when each component has a finite range.
 bool is_usable_box(const std::vector<double>& low, const std::vector<double>& high, size_t components) {
   const auto is_finite = [](double value) { return std::isfinite(value); };
   return low.size() == components && high.size() == components && std::all_of(low.begin(), low.end(), is_finite) &&

@@ -43,7 +43,7 @@ absl::StatusOr<std::string> read_token(const std::string& path) {
               : absl::InvalidArgumentError(absl::StrCat(path, " must have one token and nothing else"));
 }
 
-/// Nothing that is sent there leaves the machine.
+/// True for an address to which nothing leaves the machine.
 bool is_local(const std::string& server) {
   return absl::StartsWith(server, "unix:") || absl::StartsWith(server, "127.") ||
          absl::StartsWith(server, "localhost:") || absl::StartsWith(server, "[::1]:");

@@ -31,7 +31,8 @@ struct ErrorDetails {
 /// Checked by tests/unit/client/errors_test.cc.
 absl::Status status_of(const google::rpc::Status& wire);
 
-/// INVALID_ARGUMENT with violations found on this side of the wire, in the same form as the daemon's.
+/// Makes INVALID_ARGUMENT with violations found on this side of the wire, in the same form as the
+/// daemon's.
 absl::Status invalid_fields(std::string_view message, const std::vector<FieldViolation>& violations);
 
 /// The details a status carries; empty for a status without any.

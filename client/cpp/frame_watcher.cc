@@ -109,7 +109,7 @@ struct StreamEnd {
   bool is_wire_error = false;  ///< not an error of the handlers
 };
 
-/// One stream to its end.
+/// Reads one stream to its end.
 StreamEnd watch_once(const Connection& connection, v1::WatchRequest& request, const WatchHandlers& handlers) {
   const auto stub = v1::FrameService::NewStub(connection.channel());
   grpc::ClientContext context;
@@ -143,7 +143,8 @@ StreamEnd watch_once(const Connection& connection, v1::WatchRequest& request, co
   return {status_of(finished, connection.server()), assembler.moved(), !finished.ok()};
 }
 
-/// Not ABORTED: another has taken this viewer's place.
+/// True when the stream can be taken up again; ABORTED does not count, as another has taken this
+/// viewer's place.
 bool can_resume(const absl::Status& status) {
   return absl::IsUnavailable(status) || absl::IsResourceExhausted(status);
 }

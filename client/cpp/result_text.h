@@ -23,7 +23,7 @@ std::string series_csv(const v1::SimulationSpec& spec, const std::vector<v1::Ser
 /// The outcome of a preview, in a line.
 std::string preview_text(const v1::PreviewSummary& preview);
 
-/// One line about where a simulation is.
+/// Tells in one line where a simulation is.
 std::string progress_text(const v1::SeriesRow& row);
 
 /// SETTLED, FAILED, ...

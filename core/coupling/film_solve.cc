@@ -175,7 +175,7 @@ void FilmSolver::keep_void(FilmSolution& solution) const {
   }
 }
 
-/// To the pressure start + share dp, no lower than the limit.
+/// Moves to the pressure start + share dp, but no lower than the limit.
 void FilmSolver::go(double share, FilmSolution& solution) {
   solution.pressure = start_ + share * step_;
   if (has_limit()) {

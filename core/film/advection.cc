@@ -66,7 +66,7 @@ class VelocityField {
   }
 
  private:
-  /// To [0, n]; what is no number to 0.
+  /// Limits a value to [0, n]; a value that is no number becomes 0.
   static double move_inside(double value, int n) { return value > 0.0 ? std::min(value, static_cast<double>(n)) : 0.0; }
 
   static std::pair<int, double> split(double value, int n) {

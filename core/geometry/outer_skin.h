@@ -8,10 +8,11 @@
 
 namespace lipofill::geometry {
 
-/// Which of the `candidates` (triangles) belong to the outer skin: those from which enough of 13 rays within 60 degrees
-/// of the outward normal leave the scan without meeting it again. The walls of a mouth bag, of a nostril or of a second
-/// shell under the skin look at each other and fail. Hidden islands of less than 1 cm2 in the middle of outer skin (the
-/// bottom of a crease) count as skin.
+/// Finds the `candidates` (triangles) that belong to the outer skin: those from which enough of 13
+/// rays within 60 degrees of the outward normal leave the scan without meeting it again. The walls
+/// of a mouth bag, of a nostril or of a second shell under the skin look at each other and fail.
+/// Hidden islands of less than 1 cm2 in the middle of outer skin (the bottom of a crease) count as
+/// skin.
 /// @return a flag a triangle of the mesh; false for all that are no candidates
 /// Checked by tests/unit/geometry/chart_test.cc.
 std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across, const RayTree& rays,

@@ -161,7 +161,8 @@ struct RayTree::Ray {
 
 namespace {
 
-// Without fused products: which triangles a ray meets at their edges stays as it always was.
+// These use no fused products, so that the triangles a ray meets at their edges stay as they always
+// were.
 template <typename Xyz>
 auto dot(const Xyz& a, const Xyz& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

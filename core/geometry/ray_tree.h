@@ -26,7 +26,7 @@ class RayTree {
  private:
   using LanesXyz = std::array<Lanes, 3>;
 
-  /// Up to four boxes and what is in them.
+  /// Up to four boxes and their content.
   struct Node {
     LanesXyz low;
     LanesXyz high;

@@ -78,8 +78,8 @@ void drop_bad_triangles(SurfaceMesh& mesh, std::vector<std::string>& remarks) {
   }
 }
 
-/// How well two triangles at an edge continue each other: the cosine between their planes, whichever way each is
-/// turned.
+/// Measures how well two triangles at an edge continue each other: the cosine between their planes,
+/// whichever way each is turned.
 double smoothness_across(const SurfaceMesh& mesh, const EdgeUse& a, const EdgeUse& b) {
   const double turned = mesh.triangles[a.triangle][a.side] == mesh.triangles[b.triangle][b.side] ? -1.0 : 1.0;
   const Eigen::Vector3d na = compute_area_vector(mesh, mesh.triangles[a.triangle]).normalized();

@@ -48,7 +48,7 @@ std::vector<EdgeUse> sort_edge_uses(const SurfaceMesh& mesh) {
   for_edge_uses(mesh, [&](const EdgeUse& use) { ++end[use.low + 1]; });
   for (size_t v = 1; v < end.size(); ++v) end[v] += end[v - 1];
   std::vector<EdgeUse> uses(mesh.triangles.size() * 3);
-  // From the begin of its vertex each count moves to the end.
+  // Each count moves from the start of its vertex to the end.
   for_edge_uses(mesh, [&](const EdgeUse& use) { uses[end[use.low]++] = use; });
   size_t begin = 0;
   for (int v = 0; v < mesh.n_vertices(); ++v) {

@@ -8,8 +8,8 @@
 
 namespace lipofill::geometry {
 
-/// INVALID_ARGUMENT with a violation of `field` for a surface without triangles, with a position that is not finite or
-/// a triangle of a vertex that is not there.
+/// Checks a surface. INVALID_ARGUMENT with a violation of `field` when it has no triangles, a
+/// position that is not finite or a triangle of a vertex that is not there.
 absl::Status check_indices(const char* field, const SurfaceMesh& mesh);
 
 /// One side of a triangle: side k runs from corner k to corner k + 1. `low` < `high` are its vertices.

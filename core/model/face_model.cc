@@ -43,7 +43,8 @@ void add_matrix(Hasher& hasher, const Eigen::Matrix3Xd& matrix) {
   hasher.add_bytes(matrix.data(), static_cast<size_t>(matrix.size()) * sizeof(double));
 }
 
-/// At the end and only where there is one: a model without keeps the hash it had before layers had a prestress.
+/// Adds the prestress to the hash, at the end and only if there is one: a model without keeps the
+/// hash it had before layers had a prestress.
 void add_prestress(Hasher& hasher, const std::vector<TissueLayerSpec>& layers) {
   const auto is_tense = [](const TissueLayerSpec& layer) { return layer.material.prestress != 0.0; };
   if (std::none_of(layers.begin(), layers.end(), is_tense)) return;
@@ -95,7 +96,7 @@ geometry::FaceGeometrySpec make_geometry_spec(const FaceModelSpec& spec) {
   geometry_spec.n_eta = spec.n_eta;
   for (const TissueLayerSpec& layer : spec.layers) {
     geometry_spec.layers.push_back(layer.geometry);
-    // Until the bone is measured: as thick as it can be.
+    // The layer is as thick as it can be until the bone is measured.
     if (layer.down_to_bone) {
       geometry_spec.layers.back().thickness = geometry::ScalarField::constant(layer.down_to_bone->max_thickness);
     }

@@ -12,7 +12,7 @@
 
 namespace lipofill::plan {
 
-/// Which cells are fed with how much when.
+/// The volumes injected into each cell over time.
 class InjectionSchedule {
  public:
   /// Field violations are named as in lipofill.v1.Injection. Without a start it begins at `now` or when the last one
@@ -32,7 +32,7 @@ class InjectionSchedule {
 
   /// Sum of all that has been delivered [m3].
   double delivered() const { return delivered_; }
-  /// When the last injection ends [s].
+  /// End of the last injection [s].
   double end() const { return end_; }
 
   /// The first start or end of an injection after `time` [s]; infinity when there is none.

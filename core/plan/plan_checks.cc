@@ -43,7 +43,8 @@ void check_time(const SimulationSpec& spec, FieldViolations& violations) {
   violations.check_range("time.settle_skin_speed_mm_per_s", spec.settle_skin_speed * 1e3, 0.0, 1000.0, "mm/s");
 }
 
-/// Without friction on the walls there is no shear across the film for a yield stress or a spring to act on.
+/// Checks the friction: without any on the walls there is no shear across the film for a yield
+/// stress or a spring to act on.
 void check_friction(const SimulationSpec& spec, FieldViolations& violations) {
   const bool newtonian = spec.fat_flow_index == 1.0 && spec.fat_yield_stress == 0.0;
   if (newtonian && !spec.fat_shear_modulus.has_value()) return;

@@ -9,7 +9,8 @@ namespace lipofill::plan {
 /// films, names. Field violations are named as in lipofill.v1.SimulationSpec, values in the units of those names.
 absl::Status check_plan(const SimulationSpec& spec);
 
-/// RESOURCE_EXHAUSTED naming the bound when the plan cannot take one more injection.
+/// Checks that the plan can take one more injection. RESOURCE_EXHAUSTED naming the bound when it
+/// cannot.
 absl::Status check_room_for_injection(const SimulationSpec& spec);
 
 }  // namespace lipofill::plan

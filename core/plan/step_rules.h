@@ -24,7 +24,7 @@ inline TimeFigures figures_of(TimeGoal goal) {
   return {60.0, 0.5, 0.2e-3};
 }
 
-/// How steps grow, and when the skin is at rest.
+/// The growth of steps, and the rule by which the skin is at rest.
 struct StepRules {
   /// A step grows at most by this, and only when the last one was easy.
   double growth = 2.0;

@@ -99,13 +99,14 @@ struct FrameField {
 /// Checked by tests/unit/simulation/, tests/verification/ and tests/property/.
 class Simulation {
  public:
-  /// INVALID_ARGUMENT with field violations named as in lipofill.v1.SimulationSpec, values in the units of those names.
+  /// Creates a simulation. INVALID_ARGUMENT with field violations named as in
+  /// lipofill.v1.SimulationSpec, values in the units of those names.
   static absl::StatusOr<std::unique_ptr<Simulation>> create(std::shared_ptr<const model::FaceModel> model,
                                                             plan::SimulationSpec spec);
   ~Simulation();
 
-  /// One time step. Never throws. On failure phase() is kFailed with reason(), and the state stays that before the
-  /// step. Does nothing unless phase() is kRunning.
+  /// Takes one time step. Never throws. On failure phase() is kFailed with reason(), and the state
+  /// stays that before the step. Does nothing unless phase() is kRunning.
   void advance_step();
 
   Phase phase() const;

@@ -95,7 +95,7 @@ LIPOFILL_INLINE Lanes determinant(const LaneMatrix3& A, const LaneMatrix3& C) {
   return multiply_add(A.m[0][2], C.m[0][2], multiply_add(A.m[0][1], C.m[0][1], A.m[0][0] * C.m[0][0]));
 }
 
-/// One Newton step on R; returns the largest change of an entry.
+/// Takes one Newton step on R; returns the largest change of an entry.
 LIPOFILL_INLINE Lanes improve_rotation(LaneMatrix3& R) {
   LaneMatrix3 C;
   cofactors(R, C);

@@ -26,7 +26,7 @@ inline constexpr std::array<int, 8> kCornerOfBinary = {0, 1, 3, 2, 4, 5, 7, 6};
 /// Independent numbers of the modal stiffness, 3 x 3 block row by block row: the diagonal block's lower triangle, then
 /// the blocks left of it.
 inline constexpr int kModalNumbers = 171;
-/// And those of the lower blocks of an element matrix.
+/// Independent numbers of the lower blocks of an element matrix.
 inline constexpr int kStiffnessNumbers = 300;
 
 /// The data that the forces of kLanes hexahedra need. With h_k the products of local coordinates

@@ -38,7 +38,7 @@ struct RayleighDamping {
 /// rotation, clamped plate and others).
 class Tissue {
  public:
-  /// INVALID_ARGUMENT as TissueStructure::create, and for damping out of bounds.
+  /// Creates a tissue. INVALID_ARGUMENT as TissueStructure::create, and for damping out of bounds.
   static absl::StatusOr<Tissue> create(HexMesh mesh, const std::vector<ElasticMaterial>& materials,
                                        NodeSupports supports, RayleighDamping damping,
                                        const std::vector<WallSpring>& springs = {});

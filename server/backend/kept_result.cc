@@ -8,7 +8,8 @@
 namespace lipofill::server {
 namespace {
 
-/// By content: a simulation of the same name may have been deleted and run anew.
+/// Makes the key from the content: a simulation of the same name may have been deleted and run
+/// anew.
 std::string make_key(const SimulationResult& result, const Selection& selection) {
   Hasher hasher;
   for (const std::string& message : {result.meshes_message, result.frame_message}) {

@@ -171,7 +171,7 @@ absl::Status ResultKeeper::parked(const std::string& id, const SessionView& view
   if (!kept.ok()) return kept;
   if (!sessions_.remove_unless_held(id)) {
     store_.keep_summary(id, "").IgnoreError();
-    return absl::AbortedError("something is asked of it at this moment");
+    return absl::AbortedError("the simulation is in use at this moment");
   }
   metrics_.count_parked_simulation();
   return kept;

@@ -77,7 +77,7 @@ absl::StatusOr<v1::SimulationSpec> plan_at_start(const SimulationRecord& record,
 
 absl::StatusOr<Ground> find_ground(Backend& backend, const SimulationRecord& record,
                                    const std::vector<CommandRecord>& commands) {
-  // Without the model no checkpoint is any good, and none is to blame.
+  // No checkpoint is any good without the model, and none is to blame.
   if (auto model = backend.load_model(record.model); !model.ok()) return model.status();
   const auto candidates = list_candidates(backend, record.id);
   if (!candidates.ok()) return candidates.status();

@@ -24,7 +24,8 @@ struct Call {
   std::string trace_id;    ///< of the client's W3C traceparent; empty without one
   std::string parent_id;   ///< the client's span, the same way
   Principal principal;     ///< who calls, once admitted
-  /// Why it is not to be carried out; whatever answers calls looks here first. A call that nobody has looked at is not.
+  /// The reason why the call is not to be carried out; whatever answers calls looks here first. A
+  /// call that nobody has looked at is refused.
   absl::Status refusal = absl::PermissionDeniedError("the call was not admitted");
   CallGate* gate = nullptr;
   std::vector<std::string> resources = {};  ///< that its request names, once it was checked
@@ -51,8 +52,8 @@ class CallContext : public grpc::CallbackServerContext {
 /// Returns the Call that belongs to the context.
 Call& call_of(grpc::CallbackServerContext* context);
 
-/// gRPC gives contexts back through the base class whoever made them, also those of calls to methods there are not
-/// (they are generic): all must come from here.
+/// gRPC returns all contexts through the base class, no matter who made them, also those of generic
+/// calls to methods that do not exist: so all contexts must be made here.
 class CallContextAllocator : public grpc::ContextAllocator {
  public:
   grpc::CallbackServerContext* NewCallbackServerContext() override { return new CallContext; }

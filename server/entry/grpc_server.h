@@ -18,7 +18,7 @@
 
 namespace lipofill::server {
 
-/// How the services are guarded.
+/// The guards of the services.
 struct ServiceGuard {
   const SecuritySettings& settings;
   const Authenticator& authenticator;

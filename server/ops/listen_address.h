@@ -14,7 +14,8 @@ struct ListenAddress {
   std::string unix_path;  ///< empty for TCP
 
   bool is_unix() const { return !unix_path.empty(); }
-  /// Nothing that comes over the network reaches it: a UNIX socket, 127.0.0.0/8, ::1 or localhost.
+  /// True when nothing that comes over the network reaches it: a UNIX socket, 127.0.0.0/8, ::1 or
+  /// localhost.
   bool is_local() const;
 };
 

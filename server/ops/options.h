@@ -10,7 +10,7 @@
 
 namespace lipofill::server {
 
-/// How the daemon is set up.
+/// The settings of the daemon.
 struct Options {
   Options();
 

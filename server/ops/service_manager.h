@@ -19,7 +19,7 @@ class ServiceManager {
   void tell_stopping() const { send("STOPPING=1\nSTATUS=draining"); }
   void tell_alive() const { send("WATCHDOG=1"); }
 
-  /// How often to call tell_alive(): half of what is allowed. None without a watchdog.
+  /// Period of calls of tell_alive(): half of what is allowed; none without a watchdog.
   std::optional<std::chrono::microseconds> watchdog_period() const { return watchdog_period_; }
 
  private:

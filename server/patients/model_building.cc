@@ -70,7 +70,7 @@ absl::Status check_spec(Backend& backend, const std::string& patient, const v1::
   FieldViolations violations;
   if (!request.has_spec()) return field_violation("spec", "is missing");
   auto face = to_face_model_spec(request.spec());
-  // That there will be one is enough here.
+  // It is enough here that there will be one.
   if (face.ok() && !request.spec().scan_region().bone_scan().empty()) face->bone.emplace();
   violations.absorb("spec", face.ok() ? model::check_face_model(*face) : face.status());
   const auto scans = scans_of(patient, request.spec());

@@ -27,7 +27,7 @@ class AuditLog {
 
   /// Written, and on the medium some time later: at the next durable line or the end of the file.
   absl::Status append(const AuditEntry& entry);
-  /// On the medium when it returns.
+  /// Appends an entry, which is on the medium when it returns.
   absl::Status append_durably(const AuditEntry& entry);
 
   AuditHead head() const;

@@ -25,7 +25,7 @@ struct Credentials {
 /// machine. Thread-safe. Checked by tests/unit/security/authenticator_test.cc and tests/integration/security/.
 class Authenticator {
  public:
-  /// INVALID_ARGUMENT with a violation for every file that cannot be used.
+  /// Opens the files. INVALID_ARGUMENT with a violation for every file that cannot be used.
   static absl::StatusOr<std::unique_ptr<Authenticator>> open(const SecuritySettings& settings);
 
   /// True when callers must say who they are.

@@ -7,12 +7,12 @@
 
 namespace lipofill::server {
 
-/// Nobody knows who calls: UNAUTHENTICATED with a reason of its own, "TOKEN_EXPIRED".
+/// Refuses a caller whom nobody knows: UNAUTHENTICATED with a reason of its own, "TOKEN_EXPIRED".
 inline absl::Status unauthenticated(const std::string& reason, const std::string& message) {
   return with_hints(absl::UnauthenticatedError(message), {reason, {}});
 }
 
-/// It is known who calls, and that they may not: PERMISSION_DENIED.
+/// Refuses a known caller who may not do this: PERMISSION_DENIED.
 inline absl::Status permission_denied(const std::string& reason, const std::string& message) {
   return with_hints(absl::PermissionDeniedError(message), {reason, {}});
 }

@@ -7,7 +7,8 @@
 
 namespace lipofill::server {
 
-/// How the daemon is guarded. Empty file names: not set up. Secrets are in files, never in settings.
+/// The settings by which the daemon is guarded. An empty file name turns its feature off. Secrets
+/// are in files, never in settings.
 struct SecuritySettings {
   std::string tls_certificate_file;  ///< PEM: the certificate, then those between it and its authority
   std::string tls_key_file;

@@ -43,7 +43,8 @@ class Operations {
     OperationView operation;
     bool is_new = true;  ///< false: an equal request started it before
   };
-  /// INVALID_ARGUMENT for a request id that was used for another request, UNAVAILABLE once stop() was called.
+  /// Starts an operation. INVALID_ARGUMENT for a request id that was used for another request,
+  /// UNAVAILABLE once stop() was called.
   absl::StatusOr<Started> start(const std::string& target, const RequestKey& request);
   /// Adds one that is done already: a request repeated after a restart.
   OperationView add_done(const std::string& target, const RequestKey& request, std::string response_message);

@@ -14,7 +14,7 @@ struct Selection {
   bool quantised = false;                ///< uint16 over a box in place of float32
 
   bool has_mesh(const std::string& mesh) const { return std::find(meshes.begin(), meshes.end(), mesh) != meshes.end(); }
-  /// By the full name, of a mesh that is selected.
+  /// True for a field, by its full name, of a mesh that is selected.
   bool has_field(const std::string& field) const {
     return fields.empty() || std::find(fields.begin(), fields.end(), field) != fields.end();
   }

@@ -70,7 +70,8 @@ bool Session::mailbox_empty() const {
   return mailbox_.empty();
 }
 
-// Whoever fails to get the lock may leave: its holder looks at the mailbox again after letting go.
+// Carries out commands if it gets the lock. Whoever fails to get it may leave: its holder looks at
+// the mailbox again after letting go.
 void Session::carry_out_when_idle() {
   while (!mailbox_empty()) {
     const std::unique_lock lock(execution_, std::try_to_lock);

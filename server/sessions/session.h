@@ -78,7 +78,8 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
 
   const std::string& id() const { return options_.id; }
 
-  /// Lets one that was brought back go on. Once, when it is where others find it.
+  /// Lets a session that was brought back go on. It is called once, when others can find the
+  /// session.
   void go_on();
 
   /// Commands. The reply comes within one step, on any thread: FAILED_PRECONDITION naming the state where it does not
@@ -107,12 +108,13 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   /// any more.
   void suspend(Done done);
 
-  /// How long nothing was asked of it but figures; 0 while it runs, is watched, is held or catches up. Without waiting.
+  /// Time since anything but figures was asked of it; 0 while it runs, is watched, is held or
+  /// catches up. Does not wait.
   Clock::duration idle_time() const;
-  /// By hold(), or by a command that waits for its turn.
+  /// True when it is held by hold(), or by a command that waits for its turn.
   bool is_held() const { return holders_ > 0 || !mailbox_empty(); }
-  /// If it still is idle for so long, keeps its state and figures, after which it answers nothing any more but that it
-  /// is parked.
+  /// Parks the session if it still is idle for so long: keeps its state and figures, after which it
+  /// answers nothing any more but that it is parked.
   void park(std::chrono::duration<double> idle);
 
   /// Shows the meshes and the present frame to the viewer, then every frame it wants, until unwatch() or the end.

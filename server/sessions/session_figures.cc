@@ -71,7 +71,7 @@ void Session::update_view() {
   view_.cost = cost_;
 }
 
-/// From now on, when there is no simulation to take them from.
+/// Shows these figures from now on, when there is no simulation to take them from.
 void Session::show_figures(SessionView view) {
   const std::lock_guard lock(view_mutex_);
   view_ = std::move(view);

@@ -45,9 +45,10 @@ class SessionManager {
     uint64_t bytes_ = 0;
   };
 
-  /// RESOURCE_EXHAUSTED naming the bound; draining() once suspend_all() was called.
+  /// Reserves room for a session. RESOURCE_EXHAUSTED naming the bound; draining() once
+  /// suspend_all() was called.
   absl::StatusOr<Place> reserve(const std::string& tenant);
-  /// False once suspend_all() was called.
+  /// Adds the session; false once suspend_all() was called.
   [[nodiscard]] bool add(Place place, std::shared_ptr<Session> session);
   /// Finds a session only to look at it: it may be parked at any moment.
   std::shared_ptr<Session> find(const std::string& id) const;

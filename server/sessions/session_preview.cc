@@ -93,7 +93,7 @@ void Session::note_changed_plan(const std::string& why) {
   note_preview(view);
 }
 
-/// Once the simulation has ended: how far the preview was from it.
+/// Measures, once the simulation has ended, how far the preview was from it.
 void Session::judge_preview() {
   if (!view_.preview) return;
   PreviewView view = *view_.preview;

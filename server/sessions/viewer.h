@@ -72,14 +72,15 @@ class Viewer {
   bool closed() const;
   /// The meshes it is shown. INVALID_ARGUMENT naming one that there is not.
   absl::Status choose_meshes(const Topology& topology);
-  /// Once the meshes are known: whether all fields asked for are among those of a frame, by full name.
+  /// Checks, once the meshes are known, that all fields asked for are among those of a frame, by
+  /// full name.
   absl::Status check_fields(const std::vector<std::string>& known) const;
   const Selection& selection() const { return selection_; }
   bool shares_rate() const { return options_.shares_rate; }
   void set_max_rate(double max_rate_hz);
 
-  /// From the client: the frame of this sequence and all before it have been taken. INVALID_ARGUMENT for one that was
-  /// not sent.
+  /// Notes that the client has taken the frame of this sequence and all before it. INVALID_ARGUMENT
+  /// for one that was not sent.
   absl::Status acknowledge(uint64_t epoch, uint64_t sequence);
 
   // These are called by the stream.

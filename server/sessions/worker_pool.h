@@ -42,7 +42,7 @@ class WorkerPool {
   explicit WorkerPool(int n_workers, size_t max_active = std::numeric_limits<size_t>::max());
   ~WorkerPool();
 
-  /// Whoever calls makes sure that the pool does not have the task already.
+  /// Schedules a task. The caller makes sure that the pool does not have it already.
   void schedule(std::shared_ptr<Task> task, const std::string& group = "");
   /// Place in the queue, as things stand: 1 is the next; 0: it does not wait in it.
   size_t queue_position(const Task& task) const;

@@ -212,7 +212,7 @@ Reactor* SimulationService::DeleteSimulation(Context* context, const v1::DeleteS
     return reactor;
   }
   return answer(context, request, [&] {
-    // None may be woken meanwhile.
+    // No simulation may be woken meanwhile.
     const std::lock_guard lock(backend_.waking);
     return id.ok() ? delete_simulation_record(backend_, *id, request->etag()) : id.status();
   });

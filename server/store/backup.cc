@@ -128,7 +128,7 @@ std::string to_text(const Sums& sums) {
   return text;
 }
 
-/// DATA_LOSS for a line that is none, or a path that leads elsewhere.
+/// Reads the sums. DATA_LOSS for a line that is none, or a path that leads elsewhere.
 absl::StatusOr<Sums> read_sums(const fs::path& root) {
   const auto text = read_whole_file(root / kSums, kMaxSumsBytes);
   if (!text.ok()) {

@@ -16,7 +16,7 @@ struct BackupReport {
   uint64_t bytes = 0;
 };
 
-/// Told after every file.
+/// It is called after every file.
 using BackupProgress = std::function<void(const BackupReport& so_far)>;
 
 /// Copies a store to a new directory, while a daemon serves it or not: the database as it is at one moment, and the

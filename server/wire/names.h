@@ -39,7 +39,7 @@ absl::StatusOr<std::string> id_or_new(const std::string& id, char prefix, const 
 
 /// A name for people: at most 63 characters of [a-z0-9-].
 absl::Status check_display_name(const std::string& text, const std::string& field);
-/// At most 64 printable ASCII characters.
+/// Checks that a request id is at most 64 printable ASCII characters.
 absl::Status check_request_id(const std::string& request_id);
 
 /// The number of resources to list, and after which.
@@ -47,7 +47,8 @@ struct PageRequest {
   std::string after;
   int size = 100;
 };
-/// INVALID_ARGUMENT for a negative size or a token that was not made for `collection`. More than 1000 are cut to 1000.
+/// Reads a page request. INVALID_ARGUMENT for a negative size or a token that was not made for
+/// `collection`. More than 1000 are cut to 1000.
 absl::StatusOr<PageRequest> parse_page(const std::string& collection, int page_size, const std::string& page_token);
 std::string make_page_token(const std::string& collection, const std::string& last_id);
 

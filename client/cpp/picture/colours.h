@@ -22,7 +22,8 @@ struct PressureBand {
   Colour colour;
 };
 
-/// From harmless to harmful. Lightness falls from band to band, so that they are told apart without colour too.
+/// Bands of pressure from harmless to harmful. Lightness falls from band to band, so that they are
+/// told apart without colour too.
 extern const std::array<PressureBand, 4> kPressureBands;
 
 inline constexpr double kPascalPerMmhg = 133.322;

@@ -23,7 +23,7 @@ struct Area {
   double top = 1.0;
 };
 
-/// How a surface is painted.
+/// The way a surface is painted.
 struct Paint {
   enum class Kind { kPlain, kPointField, kCellColours };
   Kind kind = Kind::kPlain;                     ///< in the colour of skin

@@ -38,7 +38,7 @@ void sweep_files(Store& store, const ScanFiles& scans, const CheckpointFiles& ch
   if (swept > 0) spdlog::warn("{} files that are in no record were removed", swept);
 }
 
-/// Written beside and moved into place, so that a script never reads half a number.
+/// The file is written beside and moved into place, so that a script never reads half a number.
 absl::Status write_port(const std::string& path, int port) {
   const std::string draft = path + ".new";
   std::ofstream(draft) << port << "\n";

@@ -30,7 +30,7 @@ class Application {
   /// Reads the files of credentials; to be called before anything connects.
   absl::Status read_credentials();
   Connection connect();
-  /// `server` with the credentials; any other daemon, a private one, without.
+  /// Connects to `server` with the credentials, and to any other, private daemon without.
   Connection connect_to(const std::string& address);
 
   /// Answers with a message: its JSON with --json, else the text.
@@ -61,7 +61,7 @@ void add_patient_commands(CLI::App& root, Application& application);
 void add_scan_commands(CLI::App& root, Application& application);
 void add_volume_commands(CLI::App& scan, Application& application);
 void add_model_commands(CLI::App& root, Application& application);
-/// Below the group of the simulations.
+/// These are added below the group of the simulations.
 void add_checkpoint_commands(CLI::App& group, Application& application);
 void add_simulation_commands(CLI::App& root, Application& application);
 void add_watch_command(CLI::App& root, Application& application);

@@ -100,7 +100,7 @@ void add_render_command(CLI::App& root, Application& application) {
       ->type_name("FILE.png");
   command->add_flag("--distance", options->distance,
                     "the distance to the target that lipofill evaluate found, in place of displacement and pressure");
-  // Hidden: the child that lipofill starts under an X server.
+  // This option is hidden: it is for the child that lipofill starts under an X server.
   command->add_flag("--in-this-process", options->in_this_process)->group("");
 }
 

@@ -24,7 +24,7 @@ constexpr double kDefaultEndSeconds = 60.0;
 
 }  // namespace
 
-/// Every frame of the interval, or without one the first and the last.
+/// Asks for every frame of the interval, or without one for the first and the last.
 v1::WatchRequest Run::watch_request() const {
   v1::WatchRequest request;
   request.set_simulation(simulation_.name());
@@ -66,7 +66,7 @@ absl::Status Run::simulate() {
       });
       ended.request_stop();
     });
-    // Started only once it is watched, or the first frames would be missed.
+    // The simulation is started only once it is watched, or the first frames would be missed.
     watching.get_future().wait_for(kWatchTime);
     followed = start_and_follow(ended.get_token());
   }

@@ -17,7 +17,7 @@ namespace lipofill::client {
 
 inline constexpr char kDefaultServer[] = "127.0.0.1:50061";
 
-/// LIPOFILL_SERVER where it is set, else kDefaultServer.
+/// Address from LIPOFILL_SERVER if it is set, else kDefaultServer.
 std::string default_server();
 
 /// A gRPC status as a status of this library, with its details; UNAVAILABLE and UNAUTHENTICATED say which daemon

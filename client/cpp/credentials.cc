@@ -22,7 +22,7 @@ std::string variable(const char* name) {
   return value != nullptr ? value : "";
 }
 
-/// gRPC itself says no more of a file without one than that nobody answers.
+/// Reads a PEM file. It is checked here because gRPC says of a bad one only that nobody answers.
 absl::Status take_pem(const std::string& path, const char* what, const char* mark, std::string& text) {
   if (path.empty()) return absl::OkStatus();
   auto read = read_text_file(path);

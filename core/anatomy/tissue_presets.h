@@ -37,7 +37,7 @@ struct TissueFigures {
 /// pressure depends on it. Checked by tests/unit/anatomy/tissue_presets_test.cc.
 TissueFigures figures_of(TissuePreset preset, TissueKind kind);
 
-/// "skin", "subcutaneous", "smas", "muscle".
+/// Name of a kind of tissue: "skin", "subcutaneous", "smas", "muscle".
 std::vector<std::string> tissue_kind_names();
 std::string_view name_of(TissueKind kind);
 

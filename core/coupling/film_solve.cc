@@ -117,7 +117,8 @@ bool FilmSolver::is_exact(double tolerance, FilmSolution& solution) {
   return mismatch(solution.volume) <= tolerance;
 }
 
-/// Pressures at fixed thickness: improves `solution.pressure`; volume, void and flux follow. False: it cannot.
+/// Solves for the pressures at fixed thickness: improves `solution.pressure`; volume, void and flux
+/// follow. False when it cannot.
 bool FilmSolver::solve_pressure(double tolerance, FilmSolution& solution) {
   if (has_limit()) {
     solution.pressure = solution.pressure.cwiseMax(*lowest_);
@@ -142,7 +143,7 @@ bool FilmSolver::solve_pressure(double tolerance, FilmSolution& solution) {
   return false;
 }
 
-/// Fluxes and volumes at solution.pressure, and what the gap lacks: r = V' - g0 - C p.
+/// Computes fluxes and volumes at solution.pressure, and what the gap lacks: r = V' - g0 - C p.
 void FilmSolver::evaluate(FilmSolution& solution) {
   Eigen::Index offset = 0;
   for (size_t f = 0; f < films_.size(); ++f) {
@@ -154,7 +155,8 @@ void FilmSolver::evaluate(FilmSolution& solution) {
   residual_ = solution.volume - *gap_ - moved_;
 }
 
-/// Held: at the limit, and the gap would rather be wider than the fat fills.
+/// Marks the cells that are held: at the limit, and with a gap that would rather be wider than the
+/// fat fills.
 void FilmSolver::hold_cells_at_the_limit(const Eigen::VectorXd& p) {
   if (!has_limit()) return;
   for (Eigen::Index i = 0; i < p.size(); ++i) held_[i] = p[i] <= (*lowest_)[i] && residual_[i] <= 0.0;

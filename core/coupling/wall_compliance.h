@@ -14,7 +14,8 @@ namespace lipofill::coupling {
 /// - implicit: cells on tissue by solves with its factor, the others by the diagonal.
 struct WallCompliance {
   const Eigen::MatrixXd* dense = nullptr;  ///< (n, n) or null
-  /// (n). On the implicit route the entries of cells on tissue are their C 1, for the preconditioner alone.
+  /// The diagonal (n). On the implicit route the entries of cells on tissue are their C 1, for the
+  /// preconditioner alone.
   Eigen::VectorXd diagonal;
   CoupledFactor* tissue = nullptr;                 ///< of the implicit route, or null
   const std::vector<int>* tissue_cells = nullptr;  ///< cell of each row of the factor's B

@@ -112,7 +112,8 @@ void cut_non_manifold_edges(SurfaceMesh& mesh, std::vector<std::string>& remarks
     for (size_t begin = 0; begin < uses.size();) {
       size_t end = begin + 1;
       while (end < uses.size() && uses[end].low == uses[begin].low && uses[end].high == uses[begin].high) ++end;
-      // Hundreds of triangles at one edge are noise, not skin: none of them is worth a search for the best pair.
+      // An edge with hundreds of triangles is noise, not skin: none of them is worth a search for
+      // the best pair.
       constexpr size_t kMostSearched = 64;
       if (end - begin > 2) {
         ++over_full;

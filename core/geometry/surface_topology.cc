@@ -42,7 +42,7 @@ void for_edge_uses(const SurfaceMesh& mesh, const Visit& visit) {
 
 }  // namespace
 
-// Counted into place by their lower vertex; the few of one vertex are then sorted.
+// Uses are counted into place by their lower vertex; the few of one vertex are then sorted.
 std::vector<EdgeUse> sort_edge_uses(const SurfaceMesh& mesh) {
   std::vector<size_t> end(static_cast<size_t>(mesh.n_vertices()) + 1, 0);
   for_edge_uses(mesh, [&](const EdgeUse& use) { ++end[use.low + 1]; });

@@ -14,7 +14,7 @@ namespace lipofill::model {
 namespace {
 
 constexpr double kPascalPerKilopascal = 1e3;
-/// Pa/m in a kPa/mm.
+/// Pa/m in one kPa/mm.
 constexpr double kStiffnessUnit = 1e6;
 /// Share of the building work that comes before the layers.
 constexpr double kSkinFraction = 0.9;

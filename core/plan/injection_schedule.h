@@ -15,8 +15,8 @@ namespace lipofill::plan {
 /// The volumes injected into each cell over time.
 class InjectionSchedule {
  public:
-  /// Field violations are named as in lipofill.v1.Injection. Without a start it begins at `now` or when the last one
-  /// ends.
+  /// Adds an injection. Field violations are named as in lipofill.v1.Injection. Without a start it
+  /// begins at `now` or when the last one ends.
   absl::Status add(const model::FaceModel& model, const std::vector<FilmLayout>& films, const InjectionSpec& spec,
                    double now);
 

@@ -23,7 +23,8 @@ struct PreviewDifference {
 /// Checked by tests/unit/simulation/preview_test.cc.
 class Preview {
  public:
-  /// Field violations where the coarse grid cannot hold the plan, for example a zone that none of its cells is in.
+  /// Creates a preview. Field violations when the coarse grid cannot hold the plan, for example for
+  /// a zone that none of its cells is in.
   static absl::StatusOr<std::unique_ptr<Preview>> create(std::shared_ptr<const model::FaceModel> model,
                                                          const plan::SimulationSpec& spec);
 

@@ -43,7 +43,7 @@ LIPOFILL_INLINE Lanes find_least_corner(const Point (&x)[8]) {
   return least;
 }
 
-/// s_k of all modes in place of the nodes.
+/// Puts s_k of all modes in place of the nodes.
 LIPOFILL_INLINE void transform_to_modes(Point (&x)[8]) {
   for (const int bit : kLinear) {
     for (int b = 0; b < 8; ++b) {
@@ -56,7 +56,7 @@ LIPOFILL_INLINE void transform_to_modes(Point (&x)[8]) {
   }
 }
 
-/// sum_k h_k(b) f_k of all nodes in place of the modes.
+/// Puts sum_k h_k(b) f_k of all nodes in place of the modes.
 LIPOFILL_INLINE void transform_to_nodes(Point (&f)[8]) {
   for (const int bit : kLinear) {
     for (int b = 0; b < 8; ++b) {
@@ -144,7 +144,7 @@ LIPOFILL_INLINE void find_rotation(const LaneMatrix3& F, const Lanes& det, LaneM
   }
 }
 
-/// (R^T v)_c.
+/// Returns (R^T v)_c.
 LIPOFILL_INLINE Lanes rotate_back(const LaneMatrix3& R, int c, const Lanes& x, const Lanes& y, const Lanes& z) {
   return multiply_add(R.m[2][c], z, multiply_add(R.m[1][c], y, R.m[0][c] * x));
 }

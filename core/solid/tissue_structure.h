@@ -26,9 +26,10 @@ struct NodeSupports {
 /// Tissues share it (tissue.h); nothing in it is written once it is made, so threads may.
 class TissueStructure {
  public:
-  /// INVALID_ARGUMENT with a violation each for sizes that disagree, a node index out of range or a node in no
-  /// hexahedron, a position that is not finite, a material or spring out of bounds, a hexahedron with a non-positive
-  /// Jacobian at a corner or Gauss point, naming it. Checked by tests/unit/solid/tissue_checks_test.cc.
+  /// Creates the structure. INVALID_ARGUMENT with a violation each for sizes that disagree, a node
+  /// index out of range or a node in no hexahedron, a position that is not finite, a material or
+  /// spring out of bounds, a hexahedron with a non-positive Jacobian at a corner or Gauss point,
+  /// naming it. Checked by tests/unit/solid/tissue_checks_test.cc.
   static absl::StatusOr<std::shared_ptr<const TissueStructure>> create(HexMesh mesh,
                                                                        const std::vector<ElasticMaterial>& materials,
                                                                        NodeSupports supports,

@@ -24,7 +24,7 @@ absl::StatusOr<std::shared_ptr<Session>> find_or_wake(Backend& backend, const st
 /// their figures does not count.
 class ParkingAttendant {
  public:
-  /// `idle` 0: none is ever parked.
+  /// With `idle` 0 none is ever parked.
   ParkingAttendant(Backend& backend, std::chrono::duration<double> idle);
   ~ParkingAttendant();
 

@@ -11,7 +11,7 @@
 
 namespace lipofill::server {
 
-/// Bounds of what is kept to go on from.
+/// Bounds of the checkpoints that are kept.
 struct CheckpointOptions {
   double interval_s = 10.0;                 ///< wall time between automatic ones; 0: none
   int kept = 3;                             ///< automatic ones a simulation

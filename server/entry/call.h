@@ -45,7 +45,7 @@ Call read_call(const std::string& method, const Metadata& metadata);
 /// The context of a call with what is known of it. Every call of a service of ours has one: see CallContextAllocator.
 class CallContext : public grpc::CallbackServerContext {
  public:
-  /// Shared with its watcher, which outlasts the context by a moment.
+  /// The call is shared with its watcher, which outlasts the context by a moment.
   const std::shared_ptr<Call> call = std::make_shared<Call>();
 };
 

@@ -93,7 +93,7 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<
   // Debian builds absl, on whose mutexes gRPC runs, with its search for deadlocks, which takes part in every lock.
   absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
   grpc::EnableDefaultHealthCheckService(true);
-  // Named, so that the linker keeps the library.
+  // The library is named here so that the linker keeps it.
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   std::unique_ptr<GrpcServer> self(new GrpcServer(guard, backend));
   grpc::ServerBuilder builder;
@@ -138,7 +138,8 @@ bool GrpcServer::drain(Seconds delay, Seconds timeout) {
   return false;
 }
 
-// Shutdown() may never return: what a peer that is frozen does not take from its socket cannot be cancelled.
+// Shutdown() may never return: data that a frozen peer does not take from its socket cannot be
+// cancelled.
 std::future<void> GrpcServer::end_calls(Seconds grace) {
   const auto deadline = std::chrono::system_clock::now() + std::chrono::duration_cast<std::chrono::milliseconds>(grace);
   auto done = std::make_shared<std::promise<void>>();

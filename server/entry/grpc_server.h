@@ -49,7 +49,7 @@ class GrpcServer {
 
  private:
   GrpcServer(const ServiceGuard& guard, Backend& backend);
-  /// Ready when the last call has ended; those that have not within `grace` are cancelled.
+  /// Becomes ready when the last call has ended; calls that have not within `grace` are cancelled.
   std::future<void> end_calls(Seconds grace);
 
   Backend& backend_;

@@ -50,7 +50,7 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   void begin_kept(const std::shared_ptr<const KeptMessages>& kept);
   /// A stream that ends at once.
   void begin_failed(const absl::Status& status);
-  /// Called for the viewer when there is something to take. Never blocks.
+  /// Is called for the viewer when there is something to take. Never blocks.
   void wake();
 
   void deliver() override;

@@ -19,7 +19,7 @@ struct ListenAddress {
   bool is_local() const;
 };
 
-/// "HOST:PORT", "[IPV6]:PORT", "unix:PATH". INVALID_ARGUMENT saying what is wrong with it.
+/// Reads "HOST:PORT", "[IPV6]:PORT" or "unix:PATH". INVALID_ARGUMENT saying what is wrong with it.
 /// Checked by tests/unit/server/settings_test.cc.
 absl::StatusOr<ListenAddress> parse_listen_address(const std::string& text);
 

@@ -72,7 +72,7 @@ class Metrics {
   /// A figure that is looked up at each scrape, by `refresh`.
   prometheus::Gauge& add_gauge(const std::string& name, const std::string& help, const prometheus::Labels& labels = {});
   prometheus::Counter& add_counter(const std::string& name, const std::string& help);
-  /// Called before each scrape, on the thread that serves it.
+  /// Adds a function that is called before each scrape, on the thread that serves it.
   void add_refresh(std::function<void()> refresh);
 
   /// Returns the figures of a scrape; refreshes them first.

@@ -13,7 +13,7 @@ class Allowance {
 
   Allowance(int most, Clock::duration period) : most_(most), period_(period) {}
 
-  /// False when the period has had its share.
+  /// Takes one; false when the period has had its share.
   bool take(Clock::time_point now = Clock::now()) {
     const std::lock_guard lock(mutex_);
     if (now >= end_) {

@@ -25,7 +25,8 @@ class AuditLog {
   AuditLog(const AuditLog&) = delete;
   AuditLog& operator=(const AuditLog&) = delete;
 
-  /// Written, and on the medium some time later: at the next durable line or the end of the file.
+  /// Appends an entry, which is on the medium some time later: at the next durable line or the end
+  /// of the file.
   absl::Status append(const AuditEntry& entry);
   /// Appends an entry, which is on the medium when it returns.
   absl::Status append_durably(const AuditEntry& entry);

@@ -31,8 +31,8 @@ class Authenticator {
   /// True when callers must say who they are.
   bool asks() const { return tokens_ != nullptr || certificates_ != nullptr; }
 
-  /// UNAUTHENTICATED with a reason: NO_CREDENTIALS, TOKEN_..., CERTIFICATE_UNKNOWN, CREDENTIALS_DISAGREE for a token of
-  /// another tenant than its certificate.
+  /// Finds who calls. UNAUTHENTICATED with a reason: NO_CREDENTIALS, TOKEN_...,
+  /// CERTIFICATE_UNKNOWN, CREDENTIALS_DISAGREE for a token of another tenant than its certificate.
   absl::StatusOr<Principal> identify(const Credentials& credentials) const;
 
  private:

@@ -17,7 +17,7 @@ enum class Role {
 };
 
 const char* role_name(Role role);
-/// kNone for a word that is no role.
+/// Returns kNone for a word that is no role.
 Role role_of(const std::string& word);
 
 /// A tenant's name: a lower-case letter, then up to 30 of a-z and 0-9. Without '-', so that an id that begins with

@@ -19,8 +19,8 @@ class TokenVerifier {
   /// Opens the file of keys. INVALID_ARGUMENT naming the file and what is wrong with it.
   static absl::StatusOr<std::unique_ptr<TokenVerifier>> open(const std::string& keys_file, ClaimRules rules);
 
-  /// UNAUTHENTICATED, reasons TOKEN_MALFORMED, TOKEN_SIGNATURE, TOKEN_ISSUER, TOKEN_AUDIENCE, TOKEN_EXPIRED and
-  /// TOKEN_NOT_YET_VALID. Nothing of a token is in any message.
+  /// Verifies a token. UNAUTHENTICATED, reasons TOKEN_MALFORMED, TOKEN_SIGNATURE, TOKEN_ISSUER,
+  /// TOKEN_AUDIENCE, TOKEN_EXPIRED and TOKEN_NOT_YET_VALID. Nothing of a token is in any message.
   absl::StatusOr<Principal> verify(const std::string& token,
                                    Principal::Clock::time_point now = Principal::Clock::now()) const;
 

@@ -20,7 +20,7 @@ struct Selection {
   }
 };
 
-/// "film/deep" of "film/deep.pressure".
+/// Returns "film/deep" of "film/deep.pressure".
 inline std::string mesh_of(const std::string& array) {
   return array.substr(0, array.rfind('.'));
 }

@@ -142,7 +142,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   void carry_out_when_idle();
   bool mailbox_empty() const;
 
-  // All below: with `execution_` held.
+  // Everything below needs `execution_` held.
   void carry_out_commands();
   absl::Status guarded(const std::function<absl::Status()>& act);
   void answer(const Reply& reply, const std::function<absl::Status()>& act);

@@ -55,7 +55,7 @@ class SessionManager {
   /// Finds a session that is about to be asked something; see hold(Session).
   std::shared_ptr<Session> hold(const std::string& id) const;
   void remove(const std::string& id);
-  /// False when it is held: then it stays.
+  /// Removes the session, unless it is held: then it stays and this returns false.
   [[nodiscard]] bool remove_unless_held(const std::string& id);
   /// Adds one that was there before the daemon was started again, whatever the bounds, and lets it go on.
   void bring_back(const std::string& tenant, uint64_t bytes, std::shared_ptr<Session> session);

@@ -35,7 +35,7 @@ class WorkerPool {
   class Task {
    public:
     virtual ~Task() = default;
-    /// Must not throw.
+    /// Takes a turn; must not throw.
     virtual Next take_turn() = 0;
   };
 

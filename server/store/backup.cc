@@ -229,7 +229,7 @@ absl::StatusOr<BackupReport> restore_store(const fs::path& source, const fs::pat
     if (path == kDatabase) continue;
     if (absl::Status copied = copy(path, data / path); !copied.ok()) return copied;
   }
-  // Last and in one go: without it there is no store.
+  // The database comes last and in one go: without it there is no store.
   const fs::path draft = data / absl::StrCat(kDatabase, ".new");
   if (absl::Status copied = copy(kDatabase, draft); !copied.ok()) return copied;
   fs::rename(draft, directory->database(), error);

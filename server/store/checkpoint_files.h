@@ -19,7 +19,7 @@ struct CheckpointContent {
   std::string snapshot;      ///< simulation::Simulation::snapshot()
 };
 
-/// Largest file that is written or read.
+/// Largest size of a file that is written or read.
 inline constexpr uint64_t kMaxCheckpointBytes = uint64_t{1} << 30;
 
 /// A checkpoint as the bytes of its file, little-endian:

@@ -82,7 +82,7 @@ class SqliteStore : public Store {
  private:
   explicit SqliteStore(std::unique_ptr<Database> database) : database_(std::move(database)) {}
 
-  /// Does what is to be done whole or not at all: nothing it wrote stays when it is not OK.
+  /// Does work whole or not at all: nothing it wrote stays when it is not OK.
   using Work = std::function<absl::Status()>;
   absl::Status transact(const Work& work);
   /// The same for what a request makes, or changes, once: `name` is remembered with it. The name that an equal request

@@ -55,9 +55,9 @@ class Store {
                                                              const RequestKey& request) = 0;
   virtual absl::StatusOr<SimulationRecord> get_simulation(const std::string& id) = 0;
   virtual absl::StatusOr<std::vector<SimulationRecord>> list_simulations(const Scope& scope, const Page& page) = 0;
-  /// State, reason, summary and result in one go; automatic checkpoints go.
+  /// Keeps state, reason, summary and result in one go; automatic checkpoints go.
   virtual absl::Status end_simulation(const SimulationRecord& ended, const SimulationResult& result) = 0;
-  /// State and reason alone, without a result.
+  /// Keeps state and reason alone, without a result.
   virtual absl::Status set_simulation_state(const std::string& id, SimulationState state,
                                             const std::string& reason) = 0;
   /// Keeps the figures of a simulation that has not ended and is at rest; empty when it is in

@@ -18,7 +18,7 @@ struct CheckpointParts {
   std::string id;
 };
 
-/// Resource names, taken apart. INVALID_ARGUMENT for `field` saying what the name should look like.
+/// Takes resource names apart. INVALID_ARGUMENT for `field` saying what the name should look like.
 /// Checked by tests/unit/server/names_test.cc.
 absl::StatusOr<std::string> parse_patient_name(const std::string& name, const std::string& field);
 absl::StatusOr<PatientChild> parse_scan_name(const std::string& name, const std::string& field);

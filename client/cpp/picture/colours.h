@@ -30,11 +30,12 @@ inline constexpr double kPascalPerMmhg = 133.322;
 
 const PressureBand& pressure_band_of(double pressure_pa);
 
-/// White where nothing moved, then through yellow and red to dark: lightness falls all the way, so it also reads
-/// without colour.
+/// Colours of movement: white where nothing moved, then through yellow and red to dark. Lightness
+/// falls all the way, so it also reads without colour.
 vtkSmartPointer<vtkColorTransferFunction> displacement_colours(double largest);
 
-/// Blue inside the target, white on it, red outside; skin where there is no value.
+/// Colours of distance: blue inside the target, white on it, red outside; skin where there is no
+/// value.
 vtkSmartPointer<vtkColorTransferFunction> distance_colours(double largest);
 
 }  // namespace lipofill::client

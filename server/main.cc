@@ -39,7 +39,7 @@ void sweep_files(Store& store, const ScanFiles& scans, const CheckpointFiles& ch
   if (swept > 0) spdlog::warn("{} files that are in no record were removed", swept);
 }
 
-/// Written beside and moved into place, so that a script never reads half a number.
+/// The file is written beside and moved into place, so that a script never reads half a number.
 absl::Status write_port(const std::string& path, int port) {
   const std::string draft = path + ".new";
   std::ofstream(draft) << port << "\n";
@@ -67,7 +67,7 @@ BackendOptions backend_options(const Options& options) {
   return backend;
 }
 
-/// nullptr where none is asked for.
+/// Opens the audit log; nullptr when none is asked for.
 absl::StatusOr<std::unique_ptr<AuditLog>> open_audit_log(const Options& options) {
   const std::string path = options.security.audit_file_in(options.data);
   if (path.empty()) return nullptr;
@@ -141,7 +141,7 @@ absl::Status serve(const Options& options) {
   return served;
 }
 
-/// In place of serving: a backup or a restore, with a line of progress a second.
+/// Makes a backup or a restore in place of serving, with a line of progress a second.
 absl::Status copy_store(const Options& options) {
   using Clock = std::chrono::steady_clock;
   Clock::time_point told = Clock::now();

@@ -17,7 +17,7 @@ namespace lipofill::client {
 
 using Action = std::function<absl::StatusOr<ExitCode>()>;
 
-/// What all commands share: the options every one has, the connection, the ways to answer.
+/// The part that all commands share: the options every one has, the connection, the ways to answer.
 class Application {
  public:
   std::string server = default_server();
@@ -25,12 +25,12 @@ class Application {
   bool json = false;
   Action action;  ///< what the command line asks for
 
-  /// From here on Ctrl-C asks to stop instead of ending the program.
+  /// Makes Ctrl-C ask to stop, from here on, instead of ending the program.
   const Interrupt& interrupt();
-  /// Before anything connects: what the files of credentials hold.
+  /// Reads the files of credentials; to be called before anything connects.
   absl::Status read_credentials();
   Connection connect();
-  /// `server` with the credentials; any other daemon, a private one, without.
+  /// Connects to `server` with the credentials, and to any other, private daemon without.
   Connection connect_to(const std::string& address);
 
   /// Answers with a message: its JSON with --json, else the text.
@@ -54,14 +54,14 @@ CLI::App* add_local_command(CLI::App& parent, Application& application, const st
 /// A word that only holds further commands.
 CLI::App* add_group(CLI::App& parent, const std::string& name, const std::string& description);
 
-// One for each part of the command line.
+// Each of these adds one part of the command line.
 void add_run_command(CLI::App& root, Application& application);
 void add_plan_commands(CLI::App& root, Application& application);
 void add_patient_commands(CLI::App& root, Application& application);
 void add_scan_commands(CLI::App& root, Application& application);
 void add_volume_commands(CLI::App& scan, Application& application);
 void add_model_commands(CLI::App& root, Application& application);
-/// Below the group of the simulations.
+/// These are added below the group of the simulations.
 void add_checkpoint_commands(CLI::App& group, Application& application);
 void add_simulation_commands(CLI::App& root, Application& application);
 void add_watch_command(CLI::App& root, Application& application);

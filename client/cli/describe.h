@@ -8,7 +8,7 @@
 
 namespace lipofill::client {
 
-// For people: a few lines about one thing, one line where it stands in a list.
+// These describe one thing for people: in a few lines, or in one line where it stands in a list.
 std::string describe(const v1::Patient& patient);
 std::string describe(const v1::Scan& scan);
 std::string describe(const v1::Model& model);

@@ -4,7 +4,7 @@
 
 namespace lipofill::client {
 
-/// What the shell sees; documented in `lipofill --help` and kept stable.
+/// Exit codes for the shell; documented in `lipofill --help` and kept stable.
 enum class ExitCode {
   kOk = 0,
   kGoalNotReached = 1,
@@ -25,7 +25,7 @@ inline constexpr char kExitCodeHelp[] =
     "  5    an internal error\n"
     "  130  interrupted\n";
 
-/// Checked, from the shell, by tests/integration/cli/.
+/// Returns the exit code of an error. Checked, from the shell, by tests/integration/cli/.
 ExitCode exit_code_of(const absl::Status& status);
 
 }  // namespace lipofill::client

@@ -19,7 +19,7 @@ class Interrupt {
   std::jthread waiter_;
 };
 
-/// For a child between fork and exec: signals as a fresh program has them.
+/// Restores in a child, between fork and exec, the signals of a fresh program.
 void restore_signals_in_child();
 
 }  // namespace lipofill::client

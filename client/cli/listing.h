@@ -7,7 +7,8 @@
 
 namespace lipofill::client {
 
-/// All pages of a list call in one response. `items` gives the repeated field of a response.
+/// Reads all pages of a list call into one response. `items` gives the repeated field of a
+/// response.
 template <typename Service, typename Request, typename Response, typename Items>
 absl::StatusOr<Response> list_all(const Connection& connection,
                                   grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&,
@@ -25,7 +26,7 @@ absl::StatusOr<Response> list_all(const Connection& connection,
   return all;
 }
 
-/// "collection/id" from either that or the id alone.
+/// Returns "collection/id" when given either that or the id alone.
 inline std::string full_name(const std::string& collection, const std::string& name) {
   return name.find('/') == std::string::npos ? collection + "/" + name : name;
 }

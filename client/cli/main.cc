@@ -3,10 +3,14 @@
 
 #include <exception>
 #include <iostream>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "client/cli/application.h"
 #include "client/cpp/errors.h"
+#include "client/cpp/nearest_name.h"
 #include "client/cpp/result_text.h"
 
 namespace lipofill::client {
@@ -44,6 +48,31 @@ void print_error(const Application& application, const absl::Status& status) {
   }
 }
 
+/// Refuses a command line with a word for a command that there is not, and names the nearest one there is.
+absl::Status check_commands(const CLI::App& root, int argc, char** argv) {
+  const CLI::App* app = &root;
+  std::string path;
+  for (int i = 1; i < argc && argv[i][0] != '-'; ++i) {
+    const std::string word = argv[i];
+    std::vector<std::string> names;
+    const CLI::App* named = nullptr;
+    for (const CLI::App* command : app->get_subcommands({})) {
+      names.push_back(command->get_name());
+      if (command->get_name() == word) named = command;
+    }
+    if (names.empty()) break;
+    if (named == nullptr) {
+      const std::string nearest = find_nearest_name(word, names);
+      const std::string hint = nearest.empty() ? "" : absl::StrCat(" (did you mean '", path, nearest, "'?)");
+      return absl::InvalidArgumentError(
+          absl::StrCat("there is no command '", path, word, "'", hint, "; see lipofill ", path, "--help"));
+    }
+    app = named;
+    absl::StrAppend(&path, word, " ");
+  }
+  return absl::OkStatus();
+}
+
 /// A command line that does not parse, also as JSON when that was asked for.
 int report_usage(const CLI::App& root, const CLI::ParseError& error, const Application& application) {
   if (error.get_exit_code() == 0) return root.exit(error);  // --help
@@ -79,6 +108,10 @@ int run(int argc, char** argv) {
     root.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     for (int i = 1; i < argc; ++i) application.json = application.json || std::string_view(argv[i]) == "--json";
+    if (const absl::Status known = check_commands(root, argc, argv); error.get_exit_code() != 0 && !known.ok()) {
+      print_error(application, known);
+      return static_cast<int>(ExitCode::kBadInput);
+    }
     return report_usage(root, error, application);
   }
   return static_cast<int>(carry_out(application));

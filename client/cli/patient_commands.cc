@@ -66,7 +66,7 @@ absl::StatusOr<ExitCode> list(Application& application) {
   return application.answer(*all, text);
 }
 
-/// What is not given stays as it is: the call itself replaces everything.
+/// Leaves everything that is not given as it is: the call itself replaces everything.
 absl::StatusOr<ExitCode> update(Application& application, const Options& options) {
   const Connection connection = application.connect();
   auto patient = get_patient(connection, options.name);

@@ -21,7 +21,8 @@ bool has_display() {
   return display != nullptr && *display != '\0';
 }
 
-/// Before the drawing process writes what its libraries say of it.
+/// Checks that the picture can be written. This comes first, as the drawing process would write
+/// what its libraries say of it.
 absl::Status check_can_be_written(const std::filesystem::path& png) {
   const std::filesystem::path folder = png.has_parent_path() ? png.parent_path() : ".";
   if (::access(folder.c_str(), W_OK | X_OK) == 0) return absl::OkStatus();
@@ -38,7 +39,8 @@ absl::Status run_drawing(const std::vector<std::string>& command) {
   const std::string text = read_text_file(log).value_or("");
   const std::string message =
       absl::StrCat("the picture could not be drawn (exit code ", *code, ")", text.empty() ? "" : ": ", text);
-  // What the drawing process refuses is the input; what ends it otherwise is the screen.
+  // An error that the drawing process reports is in the input; anything else that ends it is due to
+  // the screen.
   return *code == 2 ? absl::InvalidArgumentError(message) : absl::FailedPreconditionError(message);
 }
 

@@ -13,7 +13,7 @@
 namespace lipofill::client {
 namespace {
 
-/// What can be known without a daemon: the JSON, the fields, the files it names.
+/// Checks everything that needs no daemon: the JSON, the fields, the files it names.
 absl::Status check_files(PlanFile* plan) {
   if (plan->plan.model().has_scan_region() && !plan->scan_file && plan->plan.model().scan_region().scan().empty()) {
     return invalid_fields(

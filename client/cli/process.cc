@@ -37,7 +37,7 @@ std::vector<char*> environment_to_hand_on() {
   return variables;
 }
 
-/// In the child; only async-signal-safe calls.
+/// Turns the child into the program; it may make async-signal-safe calls only.
 [[noreturn]] void become(char* const* arguments, char* const* environment, int log, pid_t parent, bool detached) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(127);

@@ -10,7 +10,7 @@
 
 namespace lipofill::client {
 
-/// Where a program is: beside this one, or on PATH; empty when nowhere.
+/// Finds a program beside this one, or on PATH; empty when it is nowhere.
 std::filesystem::path find_program(const std::string& name);
 
 /// The file of this program itself.

@@ -55,7 +55,8 @@ absl::Status draw_here(const Options& options) {
   return draw_result_picture(request);
 }
 
-/// Of a simulation by its name: its final state is fetched into a folder that goes again.
+/// Draws a simulation by its name: fetches its final state into a folder that is removed
+/// afterwards.
 absl::Status draw_simulation(Application& application, const Options& options) {
   if (options.out.empty())
     return absl::InvalidArgumentError("--out FILE.png is needed to draw a simulation by its name");
@@ -99,7 +100,7 @@ void add_render_command(CLI::App& root, Application& application) {
       ->type_name("FILE.png");
   command->add_flag("--distance", options->distance,
                     "the distance to the target that lipofill evaluate found, in place of displacement and pressure");
-  // Hidden: the child that lipofill starts under an X server.
+  // This option is hidden: it is for the child that lipofill starts under an X server.
   command->add_flag("--in-this-process", options->in_this_process)->group("");
 }
 

@@ -7,9 +7,9 @@
 
 namespace lipofill::client {
 
-/// What stands beside the panels of a result's picture, from the summary.json of its folder: what was injected, how far
-/// the skin moves, volume and pressure of each zone. Empty where the folder has no summary that can be read: the
-/// picture is then drawn without.
+/// Returns the figures beside the panels of a result's picture, from the summary.json of its
+/// folder: volume injected, movement of the skin, volume and pressure of each zone. Empty where the
+/// folder has no summary that can be read: the picture is then drawn without.
 std::vector<std::pair<std::string, std::string>> figures_of_folder(const std::filesystem::path& folder);
 
 }  // namespace lipofill::client

@@ -13,7 +13,7 @@
 
 namespace lipofill::client {
 
-/// What a folder of results says about a simulation that a daemon at a lasting address has.
+/// Record for a folder of results of a simulation that lives on a daemon at a lasting address.
 absl::StatusOr<RunRecord> record_of_simulation(const Connection& connection, const v1::Simulation& simulation);
 
 /// Writes series.csv and summary.json into a folder of results.

@@ -197,7 +197,8 @@ void Run::draw() {
   progress_.finish();
 }
 
-/// With --discard nothing of the run stays on the daemon; what was never a result does not stay either way.
+/// Deletes everything of the run from the daemon with --discard, and always that which never became
+/// a result.
 void Run::clean_up() {
   if (options_.keep && !simulation_.name().empty()) return;
   if (connection_) {

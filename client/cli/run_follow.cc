@@ -24,7 +24,7 @@ constexpr double kDefaultEndSeconds = 60.0;
 
 }  // namespace
 
-/// Every frame of the interval, or without one the first and the last.
+/// Asks for every frame of the interval, or without one for the first and the last.
 v1::WatchRequest Run::watch_request() const {
   v1::WatchRequest request;
   request.set_simulation(simulation_.name());
@@ -66,13 +66,13 @@ absl::Status Run::simulate() {
       });
       ended.request_stop();
     });
-    // Started only once it is watched, or the first frames would be missed.
+    // The simulation is started only once it is watched, or the first frames would be missed.
     watching.get_future().wait_for(kWatchTime);
     followed = start_and_follow(ended.get_token());
   }
   if (application_.interrupt().requested()) {
     stop_simulation();
-    // What it had reached is worth keeping.
+    // The state it had reached is worth keeping.
     const Connection last_words = connection_->without_stop();
     if (auto state = get_simulation(last_words, simulation_.name()); state.ok()) simulation_ = *std::move(state);
     (void)fetch_series(last_words, simulation_.name(), &rows_);
@@ -90,7 +90,8 @@ absl::Status Run::start_and_follow(const std::stop_token& frames_ended) {
   request.set_name(simulation_.name());
   const auto started = connection_->call<SimulationService>(&SimulationService::Stub::StartSimulation, request);
   if (!started.ok()) {
-    // Without a start no frame ever comes: the taker is ended by deleting what it watches.
+    // No frame ever comes without a start: deleting the simulation ends the taker that waits for
+    // them.
     v1::DeleteSimulationRequest remove;
     remove.set_name(simulation_.name());
     (void)connection_->without_stop().call<SimulationService>(&SimulationService::Stub::DeleteSimulation, remove);
@@ -108,7 +109,7 @@ absl::Status Run::start_and_follow(const std::stop_token& frames_ended) {
   return absl::OkStatus();
 }
 
-/// Once, when the preview is there or has failed.
+/// Tells of the preview once, when it is there or has failed.
 void Run::tell_preview() {
   if (preview_told_ || !simulation_.spec().preview()) return;
   const auto simulation = get_simulation(*connection_, simulation_.name());
@@ -131,7 +132,7 @@ void Run::show_progress() {
 void Run::stop_simulation() {
   v1::StopSimulationRequest request;
   request.set_name(simulation_.name());
-  // One that has ended meanwhile refuses, which is as good.
+  // A simulation that has ended meanwhile refuses, which is just as good.
   (void)connection_->without_stop().call<SimulationService>(&SimulationService::Stub::StopSimulation, request,
                                                             std::chrono::seconds(10));
 }

@@ -22,7 +22,7 @@ struct RunRecord {
 
 absl::Status write_run_record(const std::filesystem::path& folder, const RunRecord& record);
 
-/// INVALID_ARGUMENT for a folder that no run has written.
+/// Reads the record of a run. INVALID_ARGUMENT for a folder that no run has written.
 absl::StatusOr<RunRecord> read_run_record(const std::filesystem::path& folder);
 
 }  // namespace lipofill::client

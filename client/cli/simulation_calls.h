@@ -12,7 +12,7 @@ namespace lipofill::client {
 
 absl::StatusOr<v1::Simulation> get_simulation(const Connection& connection, const std::string& name);
 
-/// Whether a simulation has ended, however.
+/// True when a simulation has ended, in whatever way.
 bool has_ended(v1::Simulation::State state);
 
 /// Adds the rows after the last one held, all that there are.

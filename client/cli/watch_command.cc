@@ -14,7 +14,7 @@
 namespace lipofill::client {
 namespace {
 
-/// Two, so that one is on its way while the other is told.
+/// There are two, so that one is on its way while the other is told.
 constexpr uint32_t kFramesAhead = 2;
 
 struct Options {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint64_t kMaxArrayBytes = uint64_t{4} << 30;
 
-/// Bytes an array of this shape takes; none when that is more than any mesh needs.
+/// Number of bytes that an array of this shape takes; none when that is more than any mesh needs.
 std::optional<uint64_t> bytes_of(const std::vector<size_t>& shape, size_t bytes_each) {
   uint64_t bytes = bytes_each;
   for (size_t extent : shape) {
@@ -28,7 +28,7 @@ absl::Status refuse(const v1::ArraySlice& slice, const std::string& what) {
   return absl::DataLossError(absl::StrCat("array '", slice.name(), "' ", what));
 }
 
-/// Codes stand for float32 values.
+/// UINT16 codes stand for float32 values.
 std::optional<ElementType> element_type_of(v1::ArrayType type) {
   switch (type) {
     case v1::FLOAT32:
@@ -56,7 +56,7 @@ std::optional<ArrayLocation> location_of(v1::ArrayLocation location) {
   }
 }
 
-/// One finite range a component.
+/// True when each component has a finite range.
 bool is_usable_box(const std::vector<double>& low, const std::vector<double>& high, size_t components) {
   const auto is_finite = [](double value) { return std::isfinite(value); };
   return low.size() == components && high.size() == components && std::all_of(low.begin(), low.end(), is_finite) &&

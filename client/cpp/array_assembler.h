@@ -14,14 +14,15 @@ namespace lipofill::client {
 /// tests/unit/client/array_assembler_test.cc.
 class ArrayAssembler {
  public:
-  /// DATA_LOSS for a slice that does not follow the one before it, or that goes beyond the array's own shape.
+  /// Adds a slice. DATA_LOSS for one that does not follow the one before it, or that goes beyond
+  /// the array's own shape.
   absl::Status add(const v1::ArraySlice& slice);
 
   /// The arrays in the order they came, and starts anew. DATA_LOSS where bytes are missing.
   absl::StatusOr<std::vector<Array>> take();
 
  private:
-  /// Between what was received and what it will be.
+  /// The part of an array received so far, and what decodes it.
   struct Growing {
     Array array;
     bool is_coded = false;

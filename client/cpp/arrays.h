@@ -27,7 +27,7 @@ struct Array {
   std::string_view mesh() const;
   std::string_view field() const;
   size_t rows() const { return shape.empty() ? 0 : shape[0]; }
-  /// Values a row: 1 for shape (n), 3 for (n, 3).
+  /// Number of values a row: 1 for shape (n), 3 for (n, 3).
   size_t columns() const { return shape.size() < 2 ? 1 : shape[1]; }
 
   /// The values in place, without a copy. Precondition: type is the one named.

@@ -17,7 +17,7 @@ namespace lipofill::client {
 
 inline constexpr char kDefaultServer[] = "127.0.0.1:50061";
 
-/// LIPOFILL_SERVER where it is set, else kDefaultServer.
+/// Address from LIPOFILL_SERVER if it is set, else kDefaultServer.
 std::string default_server();
 
 /// A gRPC status as a status of this library, with its details; UNAVAILABLE and UNAUTHENTICATED say which daemon
@@ -46,7 +46,7 @@ class Connection {
   /// Setting up a simulation of a large model takes the daemon minutes.
   static constexpr std::chrono::seconds kCreationTimeout{600};
 
-  /// One request, one response. DEADLINE_EXCEEDED after `timeout`.
+  /// Sends one request and returns its response. DEADLINE_EXCEEDED after `timeout`.
   template <typename Service, typename Request, typename Response>
   absl::StatusOr<Response> call(grpc::Status (Service::Stub::*method)(grpc::ClientContext*, const Request&, Response*),
                                 const Request& request, std::chrono::seconds timeout = std::chrono::seconds(60)) const {

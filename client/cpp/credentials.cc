@@ -22,7 +22,7 @@ std::string variable(const char* name) {
   return value != nullptr ? value : "";
 }
 
-/// gRPC itself says no more of a file without one than that nobody answers.
+/// Reads a PEM file. It is checked here because gRPC says of a bad one only that nobody answers.
 absl::Status take_pem(const std::string& path, const char* what, const char* mark, std::string& text) {
   if (path.empty()) return absl::OkStatus();
   auto read = read_text_file(path);
@@ -43,7 +43,7 @@ absl::StatusOr<std::string> read_token(const std::string& path) {
               : absl::InvalidArgumentError(absl::StrCat(path, " must have one token and nothing else"));
 }
 
-/// Nothing that is sent there leaves the machine.
+/// True for an address to which nothing leaves the machine.
 bool is_local(const std::string& server) {
   return absl::StartsWith(server, "unix:") || absl::StartsWith(server, "127.") ||
          absl::StartsWith(server, "localhost:") || absl::StartsWith(server, "[::1]:");

@@ -20,10 +20,11 @@ struct CredentialFiles {
   std::string tls_key;
 };
 
-/// LIPOFILL_TOKEN_FILE, LIPOFILL_TLS_CA, LIPOFILL_TLS_CERT and LIPOFILL_TLS_KEY, where they are set.
+/// The files named by LIPOFILL_TOKEN_FILE, LIPOFILL_TLS_CA, LIPOFILL_TLS_CERT and LIPOFILL_TLS_KEY,
+/// if they are set.
 CredentialFiles credential_files_of_environment();
 
-/// What was in the files.
+/// Content of the credential files.
 struct Credentials {
   std::string token_file;
   std::string ca_pem;

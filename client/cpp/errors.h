@@ -20,7 +20,7 @@ struct FieldViolation {
   std::string description;
 };
 
-/// What an error says beyond its message: google.rpc.ErrorInfo and google.rpc.BadRequest.
+/// Details of an error beyond its message: google.rpc.ErrorInfo and google.rpc.BadRequest.
 struct ErrorDetails {
   std::string reason;
   std::map<std::string, std::string> metadata;
@@ -31,16 +31,19 @@ struct ErrorDetails {
 /// Checked by tests/unit/client/errors_test.cc.
 absl::Status status_of(const google::rpc::Status& wire);
 
-/// INVALID_ARGUMENT with violations found on this side of the wire, in the same form as the daemon's.
+/// Makes INVALID_ARGUMENT with violations found on this side of the wire, in the same form as the
+/// daemon's.
 absl::Status invalid_fields(std::string_view message, const std::vector<FieldViolation>& violations);
 
 /// The details a status carries; empty for a status without any.
 ErrorDetails error_details_of(const absl::Status& status);
 
-/// For people: the violations, a line each, where there are any; otherwise the message.
+/// The error as people read it: the violations, a line each, if there are any; otherwise the
+/// message.
 std::string error_text(const absl::Status& status);
 
-/// For programs: {"error": {"code", "message", "reason", "field_violations": [{"field", "description"}]}}.
+/// The error as programs read it: {"error": {"code", "message", "reason", "field_violations":
+/// [{"field", "description"}]}}.
 std::string error_json(const absl::Status& status);
 
 }  // namespace lipofill::client

@@ -28,7 +28,8 @@ class StreamAssembler {
   }
 
   bool moved() const { return moved_; }
-  /// Whether the last message was the end of a frame that is to be acknowledged: all but the last one.
+  /// True when the last message ended a frame that is to be acknowledged: all but the last frame
+  /// are.
   bool has_frame_to_acknowledge() const { return completed_frame_ && request_.max_unacknowledged_frames() > 0; }
 
  private:
@@ -67,7 +68,8 @@ class StreamAssembler {
   bool moved_ = false;
 };
 
-/// What fails here without its fault ends the stream too, which then says why; no answer at all is DEADLINE_EXCEEDED.
+/// Acknowledges the frame. Other failures than its own also end the stream, which then says why; no
+/// answer at all is DEADLINE_EXCEEDED.
 absl::Status acknowledge(const Connection& connection, const v1::WatchRequest& request,
                          std::chrono::milliseconds limit) {
   v1::AcknowledgeFrameRequest message;
@@ -100,14 +102,14 @@ absl::Status silent(const Connection& connection, std::chrono::milliseconds limi
                                              static_cast<double>(limit.count()) / 1000.0, " s, not even a heartbeat"));
 }
 
-/// What became of one stream.
+/// Outcome of one stream.
 struct StreamEnd {
   absl::Status status;
   bool moved = false;          ///< anything whole came
   bool is_wire_error = false;  ///< not an error of the handlers
 };
 
-/// One stream to its end.
+/// Reads one stream to its end.
 StreamEnd watch_once(const Connection& connection, v1::WatchRequest& request, const WatchHandlers& handlers) {
   const auto stub = v1::FrameService::NewStub(connection.channel());
   grpc::ClientContext context;
@@ -141,7 +143,8 @@ StreamEnd watch_once(const Connection& connection, v1::WatchRequest& request, co
   return {status_of(finished, connection.server()), assembler.moved(), !finished.ok()};
 }
 
-/// Not ABORTED: another has taken this viewer's place.
+/// True when the stream can be taken up again; ABORTED does not count, as another has taken this
+/// viewer's place.
 bool can_resume(const absl::Status& status) {
   return absl::IsUnavailable(status) || absl::IsResourceExhausted(status);
 }

@@ -30,7 +30,7 @@ struct Frame {
   bool preview = false;  ///< the settled shape as a coarse model foresees it, not a step
 };
 
-/// What to do with what comes. An error ends the watch with that error.
+/// Functions that handle the messages of a watch. An error ends the watch with that error.
 struct WatchHandlers {
   std::function<absl::Status(Meshes)> on_meshes;
   std::function<absl::Status(Frame)> on_frame;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uintmax_t kMaxTextBytes = 64u << 20;
 
-/// "at line 3, column 7: ..." without the library's own prefix.
+/// Returns "at line 3, column 7: ..." without the library's own prefix.
 std::string without_prefix(std::string message) {
   const size_t bracket = message.find("] ");
   return bracket == std::string::npos ? message : message.substr(bracket + 2);

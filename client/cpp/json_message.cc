@@ -2,13 +2,14 @@
 
 #include <google/protobuf/util/json_util.h>
 
-#include <algorithm>
-#include <numeric>
+#include <string>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "client/cpp/errors.h"
 #include "client/cpp/json_file.h"
+#include "client/cpp/nearest_name.h"
 
 namespace lipofill::client {
 namespace {
@@ -18,43 +19,17 @@ using google::protobuf::EnumDescriptor;
 using google::protobuf::FieldDescriptor;
 using nlohmann::json;
 
-/// Levenshtein distance, for suggestions.
-size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (size_t j = 0; j < b.size(); ++j) {
-      const size_t substituted = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
-    }
-  }
-  return row.back();
-}
-
 const FieldDescriptor* find_field(const Descriptor& type, const std::string& key) {
   if (const FieldDescriptor* field = type.FindFieldByName(key)) return field;
   return type.FindFieldByCamelcaseName(key);
 }
 
 std::string describe_unknown(const Descriptor& type, const std::string& key) {
-  std::string names;
-  const FieldDescriptor* nearest = nullptr;
-  size_t nearest_distance = std::max<size_t>(key.size() / 2, 2);
-  for (int i = 0; i < type.field_count(); ++i) {
-    const FieldDescriptor* field = type.field(i);
-    absl::StrAppend(&names, i == 0 ? "" : ", ", field->name());
-    const bool begins_alike = key.size() >= 3 && (field->name().starts_with(key) || key.starts_with(field->name()));
-    const size_t distance = begins_alike ? 0 : edit_distance(key, field->name());
-    if (distance <= nearest_distance) {
-      nearest = field;
-      nearest_distance = distance;
-    }
-  }
-  if (nearest != nullptr) return absl::StrCat("no such field; did you mean ", nearest->name(), "?");
-  return absl::StrCat("no such field; ", type.name(), " has ", names);
+  std::vector<std::string> names;
+  for (int i = 0; i < type.field_count(); ++i) names.emplace_back(type.field(i)->name());
+  const std::string nearest = find_nearest_name(key, names);
+  if (!nearest.empty()) return absl::StrCat("no such field; did you mean ", nearest, "?");
+  return absl::StrCat("no such field; ", type.name(), " has ", absl::StrJoin(names, ", "));
 }
 
 void find_unknown_fields(const json& value, const Descriptor& type, const std::string& path,

@@ -34,8 +34,8 @@ absl::StatusOr<Landmarks> load_landmarks(const std::string& path, v1::ScanUnit s
 /// Puts landmarks into a region; its own axes stay where it has them.
 void set_landmarks(const Landmarks& landmarks, v1::ScanRegion* region);
 
-/// Which way is up in the scan's frame, by the axes or, without them, from the landmarks of the midline; none when
-/// neither says.
+/// Finds which way is up in the scan's frame, by the axes or, without them, from the landmarks of
+/// the midline; none when neither tells.
 std::optional<Point> up_of(const v1::ScanRegion& region);
 
 }  // namespace lipofill::client

@@ -10,7 +10,7 @@
 
 namespace lipofill::client {
 
-/// What the operation is doing, and how far it is in [0, 1].
+/// Takes the present stage of the operation, and its progress in [0, 1].
 using BuildProgress = std::function<void(const std::string&, double)>;
 
 /// Waits for an operation to be done, telling every progress. The operation's own error is the error of the call.

@@ -23,7 +23,8 @@ struct PlanFile {
 /// each unknown field by its path, with the nearest known name. Checked by tests/unit/client/plan_file_test.cc.
 absl::StatusOr<PlanFile> load_plan(const std::filesystem::path& path);
 
-/// INVALID_ARGUMENT for a bone file in a plan that has no scan region, or with landmarks of its own.
+/// Refuses a bone file in a plan that has no scan region, or with landmarks of its own:
+/// INVALID_ARGUMENT.
 absl::Status check_bone_file(const PlanFile& plan);
 
 /// A plan's name as the daemon takes it for dashboards: at most 63 characters of [a-z0-9-].

@@ -67,7 +67,7 @@ std::string preview_state_name(const v1::PreviewSummary& preview) {
   return v1::PreviewSummary::State_Name(preview.state());
 }
 
-/// null where the plan asks for none; the differences are null until they are known.
+/// Returns null when the plan asks for no preview; the differences are null until they are known.
 nlohmann::ordered_json preview_json(const v1::Summary& summary) {
   if (!summary.has_preview()) return nullptr;
   const v1::PreviewSummary& preview = summary.preview();

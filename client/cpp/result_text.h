@@ -9,24 +9,25 @@ namespace lipofill::client {
 
 inline constexpr char kNotAMedicalDevice[] = "Research and planning aid, not a medical device.";
 
-/// summary.json: the plan's name and the figures of the state reached. Its keys are kept stable, other tools read them.
-/// A figure that is not finite is null. Checked by tests/unit/client/result_text_test.cc.
+/// Makes summary.json: the plan's name and the figures of the state reached. Its keys are kept
+/// stable, other tools read them. A figure that is not finite is null. Checked by
+/// tests/unit/client/result_text_test.cc.
 std::string summary_json(const std::string& plan, const v1::Simulation& simulation);
 
 /// The same figures for people.
 std::string summary_text(const std::string& plan, const v1::Simulation& simulation);
 
-/// series.csv: a header with units in the names, then a line a step. Numbers are the shortest that read back to the
-/// same value.
+/// Makes series.csv: a header with units in the names, then a line a step. Numbers are the shortest
+/// that read back to the same value.
 std::string series_csv(const v1::SimulationSpec& spec, const std::vector<v1::SeriesRow>& rows);
 
-/// What came of a preview, in a line.
+/// The outcome of a preview, in a line.
 std::string preview_text(const v1::PreviewSummary& preview);
 
-/// One line about where a simulation is.
+/// Tells in one line where a simulation is.
 std::string progress_text(const v1::SeriesRow& row);
 
-/// SETTLED, FAILED, ...
+/// Name of a state: SETTLED, FAILED, ...
 std::string state_name(v1::Simulation::State state);
 
 }  // namespace lipofill::client

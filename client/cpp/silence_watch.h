@@ -18,7 +18,7 @@ class SilenceWatch {
 
   void begin_wait();
   void end_wait();
-  /// Whether on_silence was called.
+  /// True when on_silence was called.
   bool was_silent() const;
 
  private:

@@ -20,7 +20,8 @@ constexpr double kFarthestFromSkin = 0.020;  // [m]
 /// Weights of landmarks without their side.
 using Weights = std::vector<std::pair<const char*, double>>;
 
-/// On the mandible: how far along its border from the midline, and above it [m].
+/// A place on the mandible: its distance along the border from the midline, and its height above
+/// the border [m].
 struct OnMandible {
   double along = 0.0;
   double above = 0.0;

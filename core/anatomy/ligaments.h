@@ -36,7 +36,7 @@ struct PlacedLigament {
   LigamentFigures figures;                   ///< of each point
 };
 
-/// Where the named ligament ("zygomatic_left") reaches the skin.
+/// Returns the place where the named ligament ("zygomatic_left") reaches the skin.
 ///
 /// - mental, medial_mandibular, mandibular_osteocutaneous: 9.1 / 8.4, 28.5 / 8.4 and 51.1 / 9.1 mm lateral of the
 ///   midline / above the inferior border of the mandible (pubmed 27427339). Lateral distances are taken along the

@@ -24,7 +24,7 @@ struct RegionRow {
   double half_width_mm;
 };
 
-/// Placed on the skin over the structure each is named after; sizes are assumed.
+/// Regions on the skin over the structure each is named after; sizes are assumed.
 const std::vector<RegionRow>& rows() {
   static const std::vector<RegionRow> table = {
       {"masseter", {{"zygion", 0.50}, {"gonion", 0.40}, {"cheilion", 0.10}}, 0, 0, 0, "gonion", "zygion", 30, 23},

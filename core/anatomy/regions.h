@@ -41,7 +41,8 @@ struct PlacedRegion {
 /// INVALID_ARGUMENT with the field violation "" when a landmark is missing.
 absl::StatusOr<PlacedRegion> place_region_by_landmarks(const geometry::FaceGeometry& face, std::string_view name);
 
-/// INVALID_ARGUMENT when a landmark is missing or the centre lies outside the charted region.
+/// Places a region. INVALID_ARGUMENT when a landmark is missing or the centre lies outside the
+/// charted region.
 absl::StatusOr<PlacedRegion> place_region(const geometry::FaceGeometry& face, std::string_view name);
 
 }  // namespace lipofill::anatomy

@@ -7,7 +7,8 @@
 
 namespace lipofill::anatomy {
 
-/// "masseter_left" as its stem "masseter" and its side "left"; nothing for a name without a side.
+/// Splits "masseter_left" into its stem "masseter" and its side "left"; nothing for a name without
+/// a side.
 inline std::optional<std::pair<std::string_view, std::string_view>> split_side(std::string_view name) {
   for (const std::string_view side : {"left", "right"}) {
     if (!name.ends_with(side) || name.size() <= side.size()) continue;

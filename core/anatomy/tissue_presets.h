@@ -10,7 +10,7 @@ namespace lipofill::anatomy {
 /// Tissue a layer of the face is made of.
 enum class TissueKind { kSkin, kSubcutaneous, kSmas, kMuscle };
 
-/// Whose moduli are used.
+/// The source of the moduli.
 enum class TissuePreset { kPaper, kElastography };
 
 struct TissueFigures {
@@ -37,7 +37,7 @@ struct TissueFigures {
 /// pressure depends on it. Checked by tests/unit/anatomy/tissue_presets_test.cc.
 TissueFigures figures_of(TissuePreset preset, TissueKind kind);
 
-/// "skin", "subcutaneous", "smas", "muscle".
+/// Name of a kind of tissue: "skin", "subcutaneous", "smas", "muscle".
 std::vector<std::string> tissue_kind_names();
 std::string_view name_of(TissueKind kind);
 

@@ -7,7 +7,8 @@
 
 namespace lipofill {
 
-/// What an error says to programs beside its code: a word for the reason, and when it makes sense to try again.
+/// Details of an error for programs, in addition to its code: a word for the reason, and when it
+/// makes sense to try again.
 struct ErrorHints {
   std::string reason;                   ///< "DRAINING"; upper case with underscores
   std::optional<double> retry_delay_s;  ///< at the earliest

@@ -26,10 +26,10 @@ class FieldViolations {
  public:
   void add(std::string field, std::string description);
 
-  /// `value` in [low, high]; not a number breaks every bound.
+  /// Checks that `value` is in [low, high]; not a number breaks every bound.
   void check_range(std::string_view field, double value, double low, double high, std::string_view unit);
 
-  /// `value` in [low, high).
+  /// Checks that `value` is in [low, high).
   void check_half_open(std::string_view field, double value, double low, double high, std::string_view unit);
 
   /// Takes over the violations of a status of this kind, their fields below `prefix`; any other error becomes a
@@ -39,7 +39,8 @@ class FieldViolations {
   bool empty() const { return violations_.empty(); }
   const std::vector<FieldViolation>& all() const { return violations_; }
 
-  /// OK when empty, else INVALID_ARGUMENT with every violation in its message and, structured, in its payload.
+  /// Returns OK when empty, else INVALID_ARGUMENT with every violation in its message and,
+  /// structured, in its payload.
   absl::Status to_status() const;
 
  private:

@@ -22,8 +22,8 @@ inline constexpr int kLanes = 4;
 using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 using LaneMask = std::int64_t __attribute__((vector_size(kLanes * sizeof(double))));
 
-/// a b + c, rounded once where the processor can. Written out, since the compiler is told to fuse nothing by itself:
-/// results must not depend on how it schedules an expression.
+/// Returns a b + c, rounded once where the processor can. Written out, since the compiler is told
+/// to fuse nothing by itself: results must not depend on how it schedules an expression.
 LIPOFILL_INLINE Lanes multiply_add(Lanes a, Lanes b, Lanes c) {
 #if defined(__AVX2__) && defined(__FMA__)
   return _mm256_fmadd_pd(a, b, c);
@@ -99,7 +99,7 @@ struct Vector3 {
   }
   LIPOFILL_INLINE friend Vector3 operator*(const T& s, const Vector3& a) { return {s * a.x, s * a.y, s * a.z}; }
 };
-/// s a + b.
+/// Returns s a + b.
 template <typename T>
 LIPOFILL_INLINE Vector3<T> multiply_add(const T& s, const Vector3<T>& a, const Vector3<T>& b) {
   return {multiply_add(s, a.x, b.x), multiply_add(s, a.y, b.y), multiply_add(s, a.z, b.z)};

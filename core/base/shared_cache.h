@@ -32,7 +32,7 @@ class SharedCache {
     return made;
   }
 
-  /// Keys whose value someone holds.
+  /// Number of keys whose value someone holds.
   size_t size() const {
     const std::lock_guard lock(mutex_);
     size_t held = 0;

@@ -51,7 +51,7 @@ inline void solve_right_transposed(int m, int n, const double* l, int ldl, doubl
   dtrsm_("R", "L", "T", "N", &m, &n, &one, l, &ldl, b, &ldb);
 }
 
-/// Cholesky factor of the lower triangle, in place; false: not positive definite.
+/// Factors the lower triangle (Cholesky) in place; false when it is not positive definite.
 inline bool factor_lower(int n, float* a, int lda) {
   int info = 0;
   spotrf_("L", &n, a, &lda, &info);

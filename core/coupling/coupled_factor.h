@@ -27,8 +27,8 @@ class CoupledFactor {
  public:
   explicit CoupledFactor(std::shared_ptr<const FactorAnalysis> analysis);
 
-  /// Factors S with the films' B, in the patterns that were analysed. False: not positive definite in that precision;
-  /// the factor is then not usable.
+  /// Factors S with the films' B, in the patterns that were analysed. False when it is not positive
+  /// definite in that precision; the factor is then not usable.
   bool factorise(const Eigen::SparseMatrix<double>& s, const Eigen::SparseMatrix<double>& b, Precision precision);
 
   /// B of the last factorise [m2] (n_cells, n_dofs).
@@ -42,7 +42,7 @@ class CoupledFactor {
   /// C p of the implicit route.
   void multiply_compliance(const Eigen::VectorXd& p, Eigen::VectorXd& product);
 
-  /// B S^-1 r; keeps r for solve_displacement.
+  /// Returns B S^-1 r; keeps r for solve_displacement.
   void solve_gap_response(const Eigen::VectorXd& r, Eigen::VectorXd& gap_response);
   /// dx = S^-1 (r + B^T p) with the r of the last solve_gap_response.
   void solve_displacement(const Eigen::VectorXd& pressure, Eigen::VectorXd& dx);

@@ -9,7 +9,7 @@
 
 namespace lipofill::coupling {
 
-/// What the pattern alone decides of the factorisation
+/// Analysis, from the pattern alone, of the factorisation
 ///
 ///     [ S  B^T ]   [ L11   0 ] [ L11^T  L21^T ]
 ///     [ B   0  ] = [ L21   I ] [   0     -C   ],      C = L21 L21^T = B S^-1 B^T
@@ -46,7 +46,8 @@ class FactorAnalysis {
   int n_cells() const { return n_cells_; }
   /// Number of values of L11 and L21, fill and padding included.
   std::int64_t n_values() const { return n_values_; }
-  /// Of one factorisation, C included; additions and multiplications counted apart.
+  /// Number of operations of one factorisation, C included; additions and multiplications are
+  /// counted apart.
   double operations() const { return operations_; }
 
   /// Degree of freedom of each row of L11.
@@ -55,7 +56,7 @@ class FactorAnalysis {
   /// Rows of all supernodes, ascending in each: place in order(), or n_dofs + cell.
   const std::vector<int>& rows() const { return rows_; }
   const std::vector<Update>& updates(int supernode) const { return updates_[supernode]; }
-  /// Where each value of S and of B goes in L.
+  /// Place in L of each value of S and of B.
   const std::vector<std::int64_t>& target_of_s() const { return target_of_s_; }
   const std::vector<std::int64_t>& target_of_b() const { return target_of_b_; }
   int max_rows() const { return max_rows_; }

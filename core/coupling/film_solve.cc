@@ -15,7 +15,8 @@ constexpr int kMaxIterations = 60;
 constexpr int kMaxTurns = 2;
 constexpr int kUndampedIterations = 20;
 
-/// Of the fullest cell's volume: a cell that holds no less than minus this is empty.
+/// Rounding error of a volume, as a share of the fullest cell's: a cell that holds no less than
+/// minus this is empty.
 constexpr double kRoundOff = 1e-10;
 
 constexpr int kMaxNewtonIterations = 60;
@@ -23,7 +24,7 @@ constexpr int kMaxLineSearch = 30;
 /// While the thickness is still far from settled, pressures need not be better than this share of its change.
 constexpr double kEarlyShare = 1e-3;
 constexpr double kEarlyTolerance = 1e-6;
-/// What conjugate gradients leave of the mismatch that is allowed.
+/// Share of the allowed mismatch that conjugate gradients may leave.
 constexpr double kIterativeShare = 0.2;
 /// A step along Newton's direction is taken once it has used up this share of the descent.
 constexpr double kSlopeShare = 0.8;
@@ -107,7 +108,8 @@ void FilmSolver::solve(const Eigen::VectorXd& gap_without_pressure, const Eigen:
   }
 }
 
-/// With C p made anew: solves of many cells only follow how it changes.
+/// True when the mismatch is within the tolerance with C p computed anew: solves of many cells only
+/// update it by its changes.
 bool FilmSolver::is_exact(double tolerance, FilmSolution& solution) {
   if (!solver_.is_lagged()) return true;
   solver_.multiply_walls(solution.pressure, moved_);
@@ -115,7 +117,8 @@ bool FilmSolver::is_exact(double tolerance, FilmSolution& solution) {
   return mismatch(solution.volume) <= tolerance;
 }
 
-/// Pressures at fixed thickness: improves `solution.pressure`; volume, void and flux follow. False: it cannot.
+/// Solves for the pressures at fixed thickness: improves `solution.pressure`; volume, void and flux
+/// follow. False when it cannot.
 bool FilmSolver::solve_pressure(double tolerance, FilmSolution& solution) {
   if (has_limit()) {
     solution.pressure = solution.pressure.cwiseMax(*lowest_);
@@ -140,7 +143,7 @@ bool FilmSolver::solve_pressure(double tolerance, FilmSolution& solution) {
   return false;
 }
 
-/// Fluxes and volumes at solution.pressure, and what the gap lacks: r = V' - g0 - C p.
+/// Computes fluxes and volumes at solution.pressure, and what the gap lacks: r = V' - g0 - C p.
 void FilmSolver::evaluate(FilmSolution& solution) {
   Eigen::Index offset = 0;
   for (size_t f = 0; f < films_.size(); ++f) {
@@ -152,7 +155,8 @@ void FilmSolver::evaluate(FilmSolution& solution) {
   residual_ = solution.volume - *gap_ - moved_;
 }
 
-/// Held: at the limit, and the gap would rather be wider than the fat fills.
+/// Marks the cells that are held: at the limit, and with a gap that would rather be wider than the
+/// fat fills.
 void FilmSolver::hold_cells_at_the_limit(const Eigen::VectorXd& p) {
   if (!has_limit()) return;
   for (Eigen::Index i = 0; i < p.size(); ++i) held_[i] = p[i] <= (*lowest_)[i] && residual_[i] <= 0.0;
@@ -173,7 +177,7 @@ void FilmSolver::keep_void(FilmSolution& solution) const {
   }
 }
 
-/// To the pressure start + share dp, no lower than the limit.
+/// Moves to the pressure start + share dp, but no lower than the limit.
 void FilmSolver::go(double share, FilmSolution& solution) {
   solution.pressure = start_ + share * step_;
   if (has_limit()) {

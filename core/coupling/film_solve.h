@@ -19,8 +19,8 @@ struct FilmSolution {
   double change = 0.0;  ///< of the volume in the last iteration, relative to the fullest cell
 };
 
-/// How exactly a film step is solved, relative to the volume of the fullest cell. A solution with a negative volume is
-/// solved on to the tolerances of this type's own.
+/// Tolerance of a film step, relative to the volume of the fullest cell. A solution with a negative
+/// volume is solved on to the tolerances of this type's own.
 struct FilmTolerance {
   double change = 1e-10;    ///< of the volume, from one iteration on the thickness to the next
   double mismatch = 1e-11;  ///< of gap and volume in a cell

@@ -18,8 +18,9 @@ struct WallNodes {
   std::vector<int> inner;
 };
 
-/// What stays constant of the gaps over a film's cells: where its pieces lie on the tissue's quadrilaterals, and where
-/// their derivatives go. A piece is what a cell covers of a quadrilateral.
+/// The constant part of the gaps over a film's cells: the places of its pieces on the tissue's
+/// quadrilaterals, and the places of their derivatives in the pattern. A piece is the part of a
+/// quadrilateral that a cell covers.
 struct GapGeometry {
   /// kLanes pieces side by side; a lane that is left over has no cell.
   struct Batch {

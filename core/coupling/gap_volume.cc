@@ -75,7 +75,8 @@ void GapVolume::integrate(const Eigen::Matrix3Xd& x) {
   }
 }
 
-/// Outer, then inner: where the walls are bonded the two go to the same value, and cancel where they cannot part.
+/// Scatters the derivative of the outer wall, then of the inner: where the walls are bonded the two
+/// go to the same value, and cancel where they cannot part.
 void GapVolume::scatter_derivative() {
   derivative_.coeffs().setZero();
   double* const values = derivative_.valuePtr();

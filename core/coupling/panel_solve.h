@@ -21,7 +21,7 @@ class PanelSolve {
 
   PanelSolve(const Scalar* panel, int n_rows, int n_columns) : panel_(panel), n_rows_(n_rows), n_columns_(n_columns) {}
 
-  /// To be done once a panel is factored.
+  /// Inverts the diagonal of a panel; to be called once it is factored.
   static void invert_diagonal(Scalar* panel, int n_rows, int n_columns) {
     for (int c = 0; c < n_columns; ++c) {
       Scalar& diagonal = panel[static_cast<std::int64_t>(c) * n_rows + c];

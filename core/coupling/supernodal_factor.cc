@@ -32,7 +32,8 @@ SupernodalFactor<Scalar>::SupernodalFactor(std::shared_ptr<const FactorAnalysis>
       forward_(analysis_->n_dofs() + analysis_->n_cells()),
       solution_(analysis_->n_dofs() + analysis_->n_cells()) {}
 
-/// False: a diagonal that is not positive, or not a number.
+/// Fills L with the scaled values of S and B; false for a diagonal that is not positive, or not a
+/// number.
 template <typename Scalar>
 bool SupernodalFactor<Scalar>::fill(const Sparse& s, const Sparse& b) {
   for (int k = 0; k < s.cols(); ++k) {
@@ -139,7 +140,7 @@ void SupernodalFactor<Scalar>::compute_compliance(Eigen::MatrixXd& compliance) {
   }
 }
 
-/// Of a supernode with few pressures.
+/// Adds the square of a supernode with few pressures.
 template <typename Scalar>
 void SupernodalFactor<Scalar>::add_square(const Supernode& node) {
   const int n = node.n_rows - node.n_tissue_rows;

@@ -23,7 +23,8 @@ class SupernodalFactor {
 
   explicit SupernodalFactor(std::shared_ptr<const FactorAnalysis> analysis);
 
-  /// False: a pivot is not positive in this precision; the factor is then not usable.
+  /// Computes the factor. False when a pivot is not positive in this precision; the factor is then
+  /// not usable.
   bool factorise(const Eigen::SparseMatrix<double>& s, const Eigen::SparseMatrix<double>& b);
 
   /// C (n_cells, n_cells), symmetric.

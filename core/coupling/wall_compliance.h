@@ -7,14 +7,15 @@
 
 namespace lipofill::coupling {
 
-/// How the walls of all films give way to pressure: gap' = rest + C p. One of
+/// The compliance of the walls of all films to pressure: gap' = rest + C p. One of
 ///
 /// - diagonal (LUMPED; a Winkler wall, a/k a cell; a rigid wall, 0);
 /// - dense: C of all cells;
 /// - implicit: cells on tissue by solves with its factor, the others by the diagonal.
 struct WallCompliance {
   const Eigen::MatrixXd* dense = nullptr;  ///< (n, n) or null
-  /// (n). On the implicit route the entries of cells on tissue are their C 1, for the preconditioner alone.
+  /// The diagonal (n). On the implicit route the entries of cells on tissue are their C 1, for the
+  /// preconditioner alone.
   Eigen::VectorXd diagonal;
   CoupledFactor* tissue = nullptr;                 ///< of the implicit route, or null
   const std::vector<int>* tissue_cells = nullptr;  ///< cell of each row of the factor's B

@@ -15,9 +15,10 @@ struct WallPressure {
   double pressure = 0.0;  ///< [Pa]
 };
 
-/// One pressure for every quadrilateral that cells of a film cover, wholly or in part: that of the cells weighted by
-/// the share of the quadrilateral, in the chart, that each covers. What no cell covers counts with zero pressure, so
-/// that sum_q p_q A_q = sum_i p_i A_i with A areas of the chart.
+/// Returns one pressure for every quadrilateral that cells of a film cover, wholly or in part: that
+/// of the cells weighted by the share of the quadrilateral, in the chart, that each covers. What no
+/// cell covers counts with zero pressure, so that sum_q p_q A_q = sum_i p_i A_i with A areas of the
+/// chart.
 /// @param pressure  of the cells [Pa] (n_cells)
 /// @return ascending in j, then i.
 /// Checked by tests/unit/export/calculix_deck_test.cc.

@@ -56,7 +56,8 @@ class VelocityField {
     return (f.x() * b.g1 + f.y() * b.g2) / b.sqrt_g;
   }
 
-  /// -1 outside all zones, and where a velocity beyond all measure leads, which is no place.
+  /// Zone at a point: -1 outside all zones, and for a point that is not finite because of a
+  /// velocity beyond all measure.
   int zone(const Vector2d& at) const {
     if (!at.allFinite()) return -1;
     const int i = split(at.x(), grid_.n_xi).first;
@@ -66,7 +67,7 @@ class VelocityField {
   }
 
  private:
-  /// To [0, n]; what is no number to 0.
+  /// Limits a value to [0, n]; a value that is no number becomes 0.
   static double move_inside(double value, int n) { return value > 0.0 ? std::min(value, static_cast<double>(n)) : 0.0; }
 
   static std::pair<int, double> split(double value, int n) {
@@ -79,7 +80,8 @@ class VelocityField {
     return metric_.vertices.col(grid_.vertex(i_end, j_end)) - metric_.vertices.col(grid_.vertex(i, j));
   }
 
-  /// Bilinear between samples at integer places, and on to half a cell beyond the outermost.
+  /// Interpolates bilinearly between samples at integer places, and on to half a cell beyond the
+  /// outermost.
   template <typename Sample>
   static Vector3d extend(const Sample& samples, int n_x, int n_y, double x, double y) {
     const int i = std::clamp(static_cast<int>(std::floor(x)), 0, std::max(n_x - 2, 0));
@@ -92,7 +94,7 @@ class VelocityField {
            t * ((1.0 - s) * samples(i, above) + s * samples(right, above));
   }
 
-  /// Bilinear between samples at integer places, constant beyond the outermost.
+  /// Interpolates bilinearly between samples at integer places, constant beyond the outermost.
   static double sample(const std::vector<double>& values, int n_x, int n_y, double x, double y) {
     const auto [i, s] = n_x > 1 ? split(x, n_x - 1) : std::pair(0, 0.0);
     const auto [j, t] = n_y > 1 ? split(y, n_y - 1) : std::pair(0, 0.0);

@@ -49,8 +49,9 @@ Eigen::VectorXd apply_forms(const FilmGrid& grid, const QuadrantForms& forms, co
 ///
 ///     d^T W d = sum over quadrants of 1/4 sqrt(g) [k1 g^11 d1^2 + 2 sqrt(k1 k2) g^12 d1 d2 + k2 g^22 d2^2]
 ///
-/// Where one of a quadrant's edges is sealed its flux is zero, which leaves k2 / g_22 for the other. W is symmetric and
-/// positive semi-definite on any chart. Flux is positive along increasing d; the film's own is -W G p.
+/// If one of a quadrant's edges is sealed, its flux is zero, which leaves k2 / g_22 for the other.
+/// W is symmetric and positive semi-definite on any chart. Flux is positive along increasing d; the
+/// film's own is -W G p.
 /// @param conductance  [m3/(Pa s)] (n_edges)
 Eigen::VectorXd apply_conductance(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& conductance,
                                   const Eigen::VectorXd& difference);
@@ -68,12 +69,12 @@ class PressureOperator {
   /// factor (G^T W G + leaks). About 10 ns a cell; allocates nothing.
   /// @param leaks  conductance of every leaky wall of the grid, in the same unit as the forms
   const Eigen::SparseMatrix<double>& assemble(const QuadrantForms& forms, const Eigen::VectorXd& leaks, double factor);
-  /// Of the last assemble.
+  /// The matrix of the last assemble.
   const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
 
  private:
-  /// Where what a cell's quadrants say goes among the values. Of sealed sides that is zero, and goes to the cell's own
-  /// diagonal value.
+  /// Places among the values to which the terms of a cell's quadrants are added. The term of a
+  /// sealed side is zero and goes to the cell's own diagonal value.
   struct CellSlots {
     std::int32_t diagonal;
     std::int32_t neighbour_diagonal[4];     ///< by Side

@@ -8,7 +8,7 @@
 namespace lipofill::film {
 namespace {
 
-/// No fat crosses the edge of a closed cell.
+/// Seals the edges of closed cells, as no fat crosses them.
 void seal_closed_cells(const FilmGrid& grid, const std::vector<char>& is_closed, Eigen::VectorXd& edge_thickness) {
   if (is_closed.empty()) return;
   for (int e = 0; e < grid.n_edges(); ++e) {

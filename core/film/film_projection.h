@@ -12,7 +12,7 @@
 
 namespace lipofill::film {
 
-/// What a film brings into a step: everything but the pressure.
+/// The input of a film to a step: everything but the pressure.
 struct FilmStepInput {
   const FilmMetric* metric = nullptr;
   Fat fat;
@@ -28,8 +28,9 @@ struct FilmStepInput {
 
 /// The film's projection for a mobility given by a guess of the new thickness:
 ///
-///     F  = h_e U + law(rho b . dX - G p)               flux [m3/s], law of flow_law.h; through leaky walls k (p_l -
-///     p_r) V' = V + injected + dt G^T F
+///     F  = h_e U + law(rho b . dX - G p)    flux [m3/s], law of flow_law.h
+///     F  = k (p_l - p_r)                    through leaky walls
+///     V' = V + injected + dt G^T F
 ///
 /// in flux form: what leaves a cell enters its neighbour, to the last bit but rounding. After the first step nothing is
 /// allocated. Checked by tests/unit/coupling/film_solve_test.cc.
@@ -37,7 +38,8 @@ class FilmProjection {
  public:
   explicit FilmProjection(const FilmGrid& grid);
 
-  /// What the next step brings, to be filled in place before begin_step; at first it is what the last step brought.
+  /// The input of the next step, to be filled in place before begin_step; until then it holds that
+  /// of the last step.
   FilmStepInput& next_input() { return input_; }
   void begin_step();
   void begin_step(FilmStepInput input);
@@ -45,7 +47,7 @@ class FilmProjection {
   /// Takes edge thicknesses and with them mobilities from a guess of the new volume, upwind by a guess of the flux.
   void set_thickness(const Values& volume_guess, const Values& flux_guess);
 
-  /// Whether V' is linear in p.
+  /// True when V' is linear in p.
   bool is_linear() const { return law_.is_linear(); }
   /// -dV'/dp = dt J at a pressure [m3/Pa]; both triangles, in a pattern that never changes.
   const Eigen::SparseMatrix<double>& linearise(const Values& pressure);

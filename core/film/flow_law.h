@@ -11,21 +11,22 @@ namespace lipofill::film {
 
 /// Flux through every open edge, F(D), as a function of what drives the fat across it, D = rho b . dX - G p [Pa].
 ///
-/// Newtonian fat, linear, with inertia (compute_conductance):              F = W(k) D
-/// Else a quadrant at a time, w the form of the conductance h^3/(12 K):     F = f(|grad|) w D + W(h^3/(12 G dt)) (D -
-/// s)
+///     F = W(k) D                                      Newtonian fat: linear, with inertia
+///     F = f(|grad|) w D + W(h^3/(12 G dt)) (D - s)    other fat, a quadrant at a time
 ///
-/// with f of compute_flow_factor at the quadrant's own gradient, |grad|^2 = D^T w D / (c h^3), c = sqrt(g)/(48 K), its
-/// thickness h = (h1^2 + h2^2)/(h1 + h2) of its two edges; the second term is the Maxwell element, one implicit step of
-/// rate = stress/viscous + d(stress)/dt/G, s the friction of the last step. F is the gradient of a convex function of
-/// D: its tangent is symmetric and positive semi-definite. Flow below the yield stress is zero, not small.
+/// with k of compute_conductance, w the form of the conductance h^3/(12 K), f of
+/// compute_flow_factor at the quadrant's own gradient, |grad|^2 = D^T w D / (c h^3),
+/// c = sqrt(g)/(48 K), its thickness h = (h1^2 + h2^2)/(h1 + h2) of its two edges; the second term
+/// is the Maxwell element, one implicit step of rate = stress/viscous + d(stress)/dt/G, s the
+/// friction of the last step. F is the gradient of a convex function of D: its tangent is symmetric
+/// and positive semi-definite. Flow below the yield stress is zero, not small.
 ///
 /// After the first step nothing is allocated. Checked by tests/unit/film/rheology_test.cc.
 class FlowLaw {
  public:
   explicit FlowLaw(const FilmGrid& grid) : grid_(&grid) {}
 
-  /// What stays as it is through a step. `metric` must outlive the step.
+  /// Computes everything that stays constant through a step. `metric` must outlive the step.
   void begin_step(const FilmMetric& metric, const Fat& fat, double dt);
 
   /// @param edge_thickness  h [m] (n_edges), 0: dry or closed

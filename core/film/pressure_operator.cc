@@ -8,8 +8,8 @@
 namespace lipofill::film {
 namespace {
 
-/// Of a quadrant at corner (s, t): the sign of w12 in terms of neighbour less cell, which is that of both differences
-/// along +xi and +eta at high-high and low-low corners.
+/// Sign of w12 for a quadrant at corner (s, t) when differences are taken as neighbour less cell;
+/// it is that of both differences along +xi and +eta at high-high and low-low corners.
 constexpr double kCrossSign[4] = {1.0, -1.0, -1.0, 1.0};
 
 }  // namespace

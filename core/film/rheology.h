@@ -32,8 +32,8 @@ double compute_friction_rate(const Fat& fat, double thickness);
 /// Checked by tests/unit/film/motion_test.cc and tests/verification/film/slot_test.cc.
 double compute_conductance(const Fat& fat, double thickness, double dt);
 
-/// How the flux between parallel plates differs from that of a Newtonian fluid of viscosity K at the same pressure
-/// gradient G, and how that changes with G.
+/// Ratio of the flux between parallel plates to that of a Newtonian fluid of viscosity K at the
+/// same pressure gradient G, and its derivative by G.
 struct FlowFactor {
   double value = 0.0;  ///< f(G) = q(G) / (h^3 G / (12 K))
   double slope = 0.0;  ///< df/dG [m/Pa]

@@ -88,7 +88,8 @@ void ImplicitViscosity::set_system(const FilmGrid& grid, const FilmMetric& metri
   set_diagonal(grid);
 }
 
-/// Of M(1), in the last term, the diagonal alone.
+/// Sets the diagonals of the system and of the momentum; the last term takes only the diagonal of
+/// M(1).
 void ImplicitViscosity::set_diagonal(const FilmGrid& grid) {
   diagonal_.setZero(grid.n_edges());
   momentum_.setZero(grid.n_edges());

@@ -16,7 +16,7 @@ struct BoneDepth {
 
 /// Deeper bone than this belongs to another part of the head [m].
 inline constexpr double kDeepestBone = 0.060;
-/// Of the nodes at least this share must meet bone.
+/// At least this share of the nodes must meet bone.
 inline constexpr double kLeastMeasuredShare = 0.25;
 
 /// Casts a ray from every node of the skin along its inward normal onto the bone. Nodes whose ray meets none within

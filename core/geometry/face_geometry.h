@@ -93,7 +93,8 @@ using Progress = std::function<bool(double fraction, const char* stage)>;
 /// Checked by tests/unit/geometry/.
 absl::StatusOr<FaceGeometry> build_face_geometry(const FaceGeometrySpec& spec, const Progress& progress);
 
-/// What build_face_geometry refuses before it looks at the scan: counts, sides of a square, layers.
+/// Checks whatever build_face_geometry can refuse before it looks at the scan: counts, sides of a
+/// square, layers.
 absl::Status check_face_geometry(const FaceGeometrySpec& spec);
 
 /// Lays layers under the skin of a geometry in place of those it has, as build_face_geometry does. FAILED_PRECONDITION

@@ -29,7 +29,7 @@ std::array<Eigen::Vector3d, kRays> make_ray_directions(const Eigen::Vector3d& no
   return directions;
 }
 
-/// Whether enough of the rays are free for skin.
+/// True when enough of the rays are free for the point to be skin.
 bool is_open(const RayTree& rays, const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
              const Eigen::Vector3d& along) {
   const Eigen::Vector3d start = position + kRayStart * normal;

@@ -21,7 +21,7 @@ class PlyBody {
   PlyBody(std::string_view bytes, const PlyHeader& header)
       : bytes_(bytes), encoding_(header.encoding), offset_(header.body_offset), line_(header.body_line) {}
 
-  /// None at the end of the file, and for text that is no finite number.
+  /// Reads the next number; none at the end of the file, and for text that is no finite number.
   std::optional<double> next(PlyType type) {
     return encoding_ == PlyEncoding::kAscii ? next_word() : next_binary(type);
   }

@@ -138,8 +138,9 @@ struct RayTree::Ray {
     }
   }
 
-  /// Where the ray enters each box; infinity where it does not meet the box within `reach`. A ray within a slab's plane
-  /// multiplies 0 by infinity: comparisons with the not-a-number that gives are false, and the slab is passed over.
+  /// Distance at which the ray enters each box; infinity when it does not meet the box within
+  /// `reach`. A ray within a slab's plane multiplies 0 by infinity: comparisons with the
+  /// not-a-number that gives are false, and the slab is passed over.
   Lanes enter(const Node& node, double reach) const {
     Lanes enter{};
     Lanes leave = fill_lanes(reach);
@@ -160,7 +161,8 @@ struct RayTree::Ray {
 
 namespace {
 
-// Without fused products: which triangles a ray meets at their edges stays as it always was.
+// These use no fused products, so that the triangles a ray meets at their edges stay as they always
+// were.
 template <typename Xyz>
 auto dot(const Xyz& a, const Xyz& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

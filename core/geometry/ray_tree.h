@@ -16,7 +16,7 @@ class RayTree {
  public:
   explicit RayTree(const SurfaceMesh& mesh);
 
-  /// Whether the ray from a point meets the surface anywhere.
+  /// True when the ray from a point meets the surface anywhere.
   bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const;
 
   /// Distance to where the ray first meets the surface, in lengths of `direction`; infinity where it does not, up to
@@ -26,7 +26,7 @@ class RayTree {
  private:
   using LanesXyz = std::array<Lanes, 3>;
 
-  /// Up to four boxes and what is in them.
+  /// Up to four boxes and their content.
   struct Node {
     LanesXyz low;
     LanesXyz high;

@@ -21,8 +21,8 @@ struct ScalarField {
   double minimum() const;
   double maximum() const;
 
-  /// INVALID_ARGUMENT with the field violation "" when the shape and the number of values disagree, either count is 0
-  /// or above 4096, or a value is not finite.
+  /// Checks the field. INVALID_ARGUMENT with the field violation "" when the shape and the number
+  /// of values disagree, either count is 0 or above 4096, or a value is not finite.
   absl::Status validate() const;
 };
 

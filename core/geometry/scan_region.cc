@@ -117,7 +117,7 @@ std::string explain_off_skin(double to_skin, double to_scan) {
                          kFarthestFromSkin * 1e3);
 }
 
-/// Corners brought onto the outer skin.
+/// Moves the corners onto the outer skin.
 absl::StatusOr<std::array<SurfacePoint, 4>> project_corners(const SurfaceMesh& skin,
                                                             const SurfaceLocator& whole_locator,
                                                             const std::array<Eigen::Vector3d, 4>& positions) {

@@ -25,7 +25,7 @@ class SurfaceBuilder {
 
   long long n_vertices() const { return static_cast<long long>(coordinates_.size() / 3); }
 
-  /// Called at the end of the file: checks every corner, and that there is a triangle.
+  /// Finishes at the end of the file: checks every corner, and that there is a triangle.
   absl::StatusOr<SurfaceMesh> build() &&;
 
  private:

@@ -10,8 +10,9 @@ namespace lipofill::geometry {
 
 struct RegionChart {
   Eigen::Matrix3Xd points;  ///< (3, (n_xi + 1) * (n_eta + 1)) on the faceted surface [m], xi fastest
-  /// Whether a vertex of the patch lies in the quadrilateral or up to a cell of the grid beside it. What hangs over the
-  /// region without being part of its skin, such as an ear lobe, does not.
+  /// True for a vertex of the patch that lies in the quadrilateral or up to a cell of the grid
+  /// beside it. It is false for surface that hangs over the region without being part of its skin,
+  /// such as an ear lobe.
   std::vector<bool> is_vertex_near;
 };
 

@@ -20,7 +20,7 @@ std::string counted(size_t n, const char* singular, const char* plural) {
   return absl::StrCat(n, " ", n == 1 ? singular : plural);
 }
 
-/// For each vertex the first one at its place, on a lattice of a micrometre.
+/// Returns for each vertex the first one at its place, on a lattice of a micrometre.
 std::vector<int> find_first_at_place(const SurfaceMesh& mesh) {
   using Cell = std::array<int64_t, 3>;
   std::vector<std::pair<Cell, int>> places(mesh.n_vertices());
@@ -78,8 +78,8 @@ void drop_bad_triangles(SurfaceMesh& mesh, std::vector<std::string>& remarks) {
   }
 }
 
-/// How well two triangles at an edge continue each other: the cosine between their planes, whichever way each is
-/// turned.
+/// Measures how well two triangles at an edge continue each other: the cosine between their planes,
+/// whichever way each is turned.
 double smoothness_across(const SurfaceMesh& mesh, const EdgeUse& a, const EdgeUse& b) {
   const double turned = mesh.triangles[a.triangle][a.side] == mesh.triangles[b.triangle][b.side] ? -1.0 : 1.0;
   const Eigen::Vector3d na = compute_area_vector(mesh, mesh.triangles[a.triangle]).normalized();
@@ -112,7 +112,8 @@ void cut_non_manifold_edges(SurfaceMesh& mesh, std::vector<std::string>& remarks
     for (size_t begin = 0; begin < uses.size();) {
       size_t end = begin + 1;
       while (end < uses.size() && uses[end].low == uses[begin].low && uses[end].high == uses[begin].high) ++end;
-      // Hundreds of triangles at one edge are noise, not skin: none of them is worth a search for the best pair.
+      // An edge with hundreds of triangles is noise, not skin: none of them is worth a search for
+      // the best pair.
       constexpr size_t kMostSearched = 64;
       if (end - begin > 2) {
         ++over_full;
@@ -151,7 +152,8 @@ void drop_specks(SurfaceMesh& mesh, std::vector<std::string>& remarks) {
                                  counted(dropped, "triangle", "triangles"), ") left out."));
 }
 
-/// Whether the triangles beside side k of t run along it the same way, so that one of them must be turned.
+/// True when the triangles beside side k of t run along it the same way, so that one of them must
+/// be turned.
 bool disagree(const SurfaceMesh& mesh, int t, int k, int neighbour) {
   const int from = mesh.triangles[t][k];
   const int to = mesh.triangles[t][(k + 1) % 3];

@@ -36,7 +36,7 @@ class DistanceSigner {
     return normal_at(nearest).dot(point - nearest.position) < 0.0 ? -nearest.distance : nearest.distance;
   }
 
-  /// Whether the nearest point lies on the border of the surface.
+  /// True when the nearest point lies on the border of the surface.
   bool is_on_border(const SurfacePoint& nearest, const std::vector<bool>& is_border_vertex) const {
     const Eigen::Vector3d b = compute_barycentric(surface_, nearest.triangle, nearest.position);
     for (int k = 0; k < 3; ++k) {

@@ -23,15 +23,16 @@ std::vector<double> compute_signed_distances(const Eigen::Matrix3Xd& points, con
 absl::StatusOr<std::vector<double>> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface,
                                                              const Unwanted& unwanted);
 
-/// Of the absolute values. All zero for no values.
+/// Computes the statistics of the absolute values. All zero for no values.
 DistanceStatistics compute_distance_statistics(const std::vector<double>& distances);
 
-/// How far a patch of one surface is from another surface, both ways.
+/// The distance between a patch of one surface and another surface, both ways.
 struct PatchDistance {
   std::vector<double> patch_to_target;  ///< signed, a value a patch vertex [m]
   DistanceStatistics patch_to_target_statistics;
-  /// From those vertices of the target whose nearest point of `patch` is in its inside, not on its border, and that
-  /// hang together with the place on the target the patch is nearest to: the far side of a head is not compared.
+  /// It is taken from those vertices of the target whose nearest point of `patch` is in its inside,
+  /// not on its border, and that hang together with the place on the target the patch is nearest
+  /// to: the far side of a head is not compared.
   DistanceStatistics target_to_patch_statistics;
 };
 

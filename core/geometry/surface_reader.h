@@ -19,7 +19,7 @@ struct SurfaceLimits {
   double min_extent_m = 0.02;
 };
 
-/// What a surface looks like before any cleaning.
+/// Properties of a surface before any cleaning.
 struct SurfaceCheck {
   int components = 0;
   int boundary_loops = 0;

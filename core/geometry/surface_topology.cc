@@ -42,13 +42,13 @@ void for_edge_uses(const SurfaceMesh& mesh, const Visit& visit) {
 
 }  // namespace
 
-// Counted into place by their lower vertex; the few of one vertex are then sorted.
+// Uses are counted into place by their lower vertex; the few of one vertex are then sorted.
 std::vector<EdgeUse> sort_edge_uses(const SurfaceMesh& mesh) {
   std::vector<size_t> end(static_cast<size_t>(mesh.n_vertices()) + 1, 0);
   for_edge_uses(mesh, [&](const EdgeUse& use) { ++end[use.low + 1]; });
   for (size_t v = 1; v < end.size(); ++v) end[v] += end[v - 1];
   std::vector<EdgeUse> uses(mesh.triangles.size() * 3);
-  // From the begin of its vertex each count moves to the end.
+  // Each count moves from the start of its vertex to the end.
   for_edge_uses(mesh, [&](const EdgeUse& use) { uses[end[use.low]++] = use; });
   size_t begin = 0;
   for (int v = 0; v < mesh.n_vertices(); ++v) {

@@ -8,8 +8,8 @@
 
 namespace lipofill::geometry {
 
-/// INVALID_ARGUMENT with a violation of `field` for a surface without triangles, with a position that is not finite or
-/// a triangle of a vertex that is not there.
+/// Checks a surface. INVALID_ARGUMENT with a violation of `field` when it has no triangles, a
+/// position that is not finite or a triangle of a vertex that is not there.
 absl::Status check_indices(const char* field, const SurfaceMesh& mesh);
 
 /// One side of a triangle: side k runs from corner k to corner k + 1. `low` < `high` are its vertices.
@@ -45,13 +45,13 @@ Components label_components(const Across& across);
 /// several borders meet each border is followed round its own fan of triangles.
 std::vector<std::vector<int>> trace_boundary_loops(const SurfaceMesh& mesh, const Across& across);
 
-/// Repeated corners, or an area that rounding could have made.
+/// True for repeated corners, or an area that rounding could have made.
 bool is_degenerate(const SurfaceMesh& mesh, const std::array<int, 3>& triangle);
 
 /// Twice the area times the outward normal [m2].
 Eigen::Vector3d compute_area_vector(const SurfaceMesh& mesh, const std::array<int, 3>& triangle);
 
-/// [m2]
+/// Area of the surface [m2].
 double compute_area(const SurfaceMesh& mesh);
 
 /// Normals of the vertices, weighted by the angles of the triangles around them; zero where no triangle is.

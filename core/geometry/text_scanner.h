@@ -12,7 +12,7 @@ class LineScanner {
  public:
   explicit LineScanner(std::string_view text) : rest_(text) {}
 
-  /// False at the end of the text.
+  /// Reads the next line; false at the end of the text.
   bool next(std::string_view& line);
   size_t line_number() const { return line_number_; }
   std::string_view rest() const { return rest_; }

@@ -14,9 +14,9 @@ namespace lipofill::model {
 namespace {
 
 constexpr double kPascalPerKilopascal = 1e3;
-/// Pa/m in a kPa/mm.
+/// Pa/m in one kPa/mm.
 constexpr double kStiffnessUnit = 1e6;
-/// Of the work of building, the part before the layers.
+/// Share of the building work that comes before the layers.
 constexpr double kSkinFraction = 0.9;
 
 void check_layer(const TissueLayerSpec& layer, const std::string& field, FieldViolations& violations) {
@@ -43,7 +43,8 @@ void add_matrix(Hasher& hasher, const Eigen::Matrix3Xd& matrix) {
   hasher.add_bytes(matrix.data(), static_cast<size_t>(matrix.size()) * sizeof(double));
 }
 
-/// At the end and only where there is one: a model without keeps the hash it had before layers had a prestress.
+/// Adds the prestress to the hash, at the end and only if there is one: a model without keeps the
+/// hash it had before layers had a prestress.
 void add_prestress(Hasher& hasher, const std::vector<TissueLayerSpec>& layers) {
   const auto is_tense = [](const TissueLayerSpec& layer) { return layer.material.prestress != 0.0; };
   if (std::none_of(layers.begin(), layers.end(), is_tense)) return;
@@ -95,7 +96,7 @@ geometry::FaceGeometrySpec make_geometry_spec(const FaceModelSpec& spec) {
   geometry_spec.n_eta = spec.n_eta;
   for (const TissueLayerSpec& layer : spec.layers) {
     geometry_spec.layers.push_back(layer.geometry);
-    // Until the bone is measured: as thick as it can be.
+    // The layer is as thick as it can be until the bone is measured.
     if (layer.down_to_bone) {
       geometry_spec.layers.back().thickness = geometry::ScalarField::constant(layer.down_to_bone->max_thickness);
     }
@@ -114,7 +115,8 @@ absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec, con
   });
 }
 
-/// Where the bone makes the layers fold, the caller can do more than with layers of a thickness of their own.
+/// Adds advice to the error when layers fold and their thickness follows the bone: the caller then
+/// has two more parameters to change.
 absl::Status with_advice(const absl::Status& status, const LayerThickness& thickness) {
   if (!absl::IsFailedPrecondition(status) || !thickness.bone) return status;
   return absl::FailedPreconditionError(absl::StrCat(
@@ -126,7 +128,7 @@ absl::Status with_advice(const absl::Status& status, const LayerThickness& thick
 absl::Status check_face_model(const FaceModelSpec& spec) {
   const bool is_square = std::holds_alternative<geometry::SquareSpec>(spec.region);
   FieldViolations violations;
-  if (spec.layers.empty() && !is_square) violations.add("layers", "are none, a scan needs at least 1");
+  if (spec.layers.empty() && !is_square) violations.add("layers", "there are none; a scan needs at least 1");
   std::set<std::string> names;
   for (size_t l = 0; l < spec.layers.size(); ++l) {
     const std::string field = absl::StrCat("layers[", l, "]");

@@ -15,7 +15,7 @@ namespace lipofill::model {
 
 enum class SupportKind { kClamped, kRollers, kFree, kElastic };
 
-/// How a side or the base of the tissue is held.
+/// The way a side or the base of the tissue is held.
 struct Support {
   SupportKind kind = SupportKind::kClamped;
   double stiffness = 0.0;  ///< [Pa/m], kElastic only
@@ -55,7 +55,7 @@ struct ThicknessRange {
   double max = 0.0;
 };
 
-/// What was found of the bone; shares are of the nodes of the chart.
+/// How much of the bone was found; shares are of the nodes of the chart.
 struct BoneFinding {
   double measured_share = 0.0;  ///< where a ray met bone
   double limited_share = 0.0;   ///< where the layer ends above the bone, at its greatest thickness
@@ -78,8 +78,9 @@ struct FaceModel {
   std::shared_ptr<SharedParts> shared = make_shared_parts();  ///< of its simulations (shared_parts.h)
 };
 
-/// INVALID_ARGUMENT with field violations named as in lipofill.v1.ModelSpec, FAILED_PRECONDITION from the scan,
-/// CANCELLED. Deterministic: the same specification gives the same content hash.
+/// Builds the model. INVALID_ARGUMENT with field violations named as in lipofill.v1.ModelSpec,
+/// FAILED_PRECONDITION from the scan, CANCELLED. Deterministic: the same specification gives the
+/// same content hash.
 absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceModelSpec& spec,
                                                                   const geometry::Progress& progress);
 

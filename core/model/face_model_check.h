@@ -5,9 +5,9 @@
 
 namespace lipofill::model {
 
-/// What is wrong with names, materials, thickness requests and supports, found without building anything and without
-/// the scan; build_face_model() begins with it. Field violations named as in lipofill.v1.ModelSpec. Checked by
-/// tests/integration/service/partial_calls_test.cc.
+/// Checks names, materials, thickness requests and supports, without building anything and without
+/// the scan; build_face_model() begins with it. Field violations named as in lipofill.v1.ModelSpec.
+/// Checked by tests/integration/service/partial_calls_test.cc.
 absl::Status check_face_model(const FaceModelSpec& spec);
 
 }  // namespace lipofill::model

@@ -64,7 +64,8 @@ ThicknessRange range_of(const Eigen::VectorXd& values) {
   return {values.minCoeff(), values.mean(), values.maxCoeff()};
 }
 
-/// What is left of `depth` under `others`, within bounds; notes how many nodes are limited.
+/// Returns the part of `depth` that the `others` leave, limited to the bounds, and notes the share
+/// of nodes that were limited.
 absl::StatusOr<Eigen::VectorXd> take_rest(const geometry::LayeredGrid& grid, const Eigen::VectorXd& depth,
                                           const Eigen::VectorXd& others, size_t index, const DownToBone& bounds,
                                           BoneFinding& finding) {

@@ -12,9 +12,10 @@
 
 namespace lipofill::model {
 
-/// What simulations of a model share as long as one of them lives: element matrices and patterns, where gaps lie on the
-/// tissue, the analysis of the factorisation. None of it is written once it is made, and it is the same whoever makes
-/// it first: results do not depend on the sharing. Thread-safe. Checked by tests/unit/model/shared_parts_test.cc.
+/// Parts that all simulations of a model share as long as one of them lives: element matrices and
+/// patterns, the places of the gaps on the tissue, the analysis of the factorisation. None of it is
+/// written once it is made, and it is the same whoever makes it first: results do not depend on the
+/// sharing. Thread-safe. Checked by tests/unit/model/shared_parts_test.cc.
 struct SharedParts {
   SharedCache<solid::TissueStructure> tissues;
   SharedCache<coupling::GapGeometry> gaps;

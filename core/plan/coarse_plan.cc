@@ -142,7 +142,8 @@ ChartPoint move_into_zone(const model::FaceModel& coarse, const std::vector<Film
   return nearest;
 }
 
-/// Where it lies on the fine skin; as it was where it lies nowhere.
+/// Returns the place of the point on the fine skin, or the point unchanged when it does not lie on
+/// it.
 geometry::SkinPoint fix_in_chart(const model::FaceModel& fine, const geometry::SkinPoint& point) {
   const auto place = geometry::locate_in_chart(fine.geometry, point);
   return place.ok() ? geometry::SkinPoint(*place) : point;

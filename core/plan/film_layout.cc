@@ -188,7 +188,7 @@ absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmS
   check_thickness(spec.rest_thickness, "rest_thickness_mm", spec.wall == FilmWallKind::kRigid ? 1e-3 : 0.0, violations);
   if (spec.initial_thickness.has_value())
     check_thickness(*spec.initial_thickness, "initial_thickness_mm", 0.0, violations);
-  if (spec.zones.empty()) violations.add("zones", "are none, must be at least 1");
+  if (spec.zones.empty()) violations.add("zones", "there are none; at least 1 is needed");
   if (spec.wall == FilmWallKind::kWinkler) {
     violations.check_range("wall.stiffness_kpa_per_mm", spec.wall_stiffness / kStiffnessUnit, 1e-9, 1e9, "kPa/mm");
   }

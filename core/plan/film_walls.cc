@@ -22,7 +22,8 @@ double side_of(const ChartPoint& a, const ChartPoint& b, const ChartPoint& p) {
   return (b.xi - a.xi) * (p.eta - a.eta) - (b.eta - a.eta) * (p.xi - a.xi);
 }
 
-/// Touching at an end counts for the left side only, so that a path through centres parts each pair once.
+/// True when the segments cross. Touching at an end counts for the left side only, so that a path
+/// through centres parts each pair once.
 bool segments_cross(const ChartPoint& a, const ChartPoint& b, const ChartPoint& c, const ChartPoint& d) {
   return (side_of(a, b, c) >= 0.0) != (side_of(a, b, d) >= 0.0) &&
          (side_of(c, d, a) >= 0.0) != (side_of(c, d, b) >= 0.0);

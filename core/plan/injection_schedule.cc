@@ -12,7 +12,7 @@ namespace lipofill::plan {
 namespace {
 
 constexpr double kCubicMetrePerMillilitre = 1e-6;
-/// No tissue plane of the face takes more: mean thickness of the fat in a zone [m].
+/// Largest mean thickness of the fat in a zone: no tissue plane of the face takes more [m].
 constexpr double kMaxMeanThickness = 20e-3;
 /// Share of a cell's content that one step may take out of it.
 constexpr double kMostTaken = 0.95;
@@ -32,8 +32,8 @@ std::pair<int, int> find_zone(const std::vector<FilmLayout>& films, const std::s
   return {-1, -1};
 }
 
-/// Evenly over the cells of a zone that do not touch its edge, where the tissue is bonded and a cannula does not go;
-/// over all of them when every cell does.
+/// Spreads the volume evenly over the cells of a zone that do not touch its edge, where the tissue
+/// is bonded and a cannula does not go; over all of them when every cell does.
 void spread_over_zone(const film::FilmGrid& grid, int zone, const Eigen::VectorXd& areas, std::vector<int>& cells,
                       std::vector<double>& shares) {
   for (const bool inner_only : {true, false}) {

@@ -12,11 +12,11 @@
 
 namespace lipofill::plan {
 
-/// Which cells are fed with how much when.
+/// The volumes injected into each cell over time.
 class InjectionSchedule {
  public:
-  /// Field violations are named as in lipofill.v1.Injection. Without a start it begins at `now` or when the last one
-  /// ends.
+  /// Adds an injection. Field violations are named as in lipofill.v1.Injection. Without a start it
+  /// begins at `now` or when the last one ends.
   absl::Status add(const model::FaceModel& model, const std::vector<FilmLayout>& films, const InjectionSpec& spec,
                    double now);
 
@@ -26,12 +26,13 @@ class InjectionSchedule {
   void deliver(const std::vector<FilmLayout>& films, absl::FunctionRef<double(int film, int cell)> held, double time,
                double dt, std::vector<Eigen::VectorXd>& received);
 
-  /// What is due by `time` and not delivered: more was to be taken out than was there [m3], negative or 0.
+  /// Volume due by `time` but not delivered, because more was to be taken out than was there [m3];
+  /// negative or 0.
   double undelivered(double time) const;
 
   /// Sum of all that has been delivered [m3].
   double delivered() const { return delivered_; }
-  /// When the last injection ends [s].
+  /// End of the last injection [s].
   double end() const { return end_; }
 
   /// The first start or end of an injection after `time` [s]; infinity when there is none.

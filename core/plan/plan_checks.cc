@@ -43,7 +43,8 @@ void check_time(const SimulationSpec& spec, FieldViolations& violations) {
   violations.check_range("time.settle_skin_speed_mm_per_s", spec.settle_skin_speed * 1e3, 0.0, 1000.0, "mm/s");
 }
 
-/// Without friction on the walls there is no shear across the film for a yield stress or a spring to act on.
+/// Checks the friction: without any on the walls there is no shear across the film for a yield
+/// stress or a spring to act on.
 void check_friction(const SimulationSpec& spec, FieldViolations& violations) {
   const bool newtonian = spec.fat_flow_index == 1.0 && spec.fat_yield_stress == 0.0;
   if (newtonian && !spec.fat_shear_modulus.has_value()) return;
@@ -77,7 +78,7 @@ absl::Status check_plan(const SimulationSpec& spec) {
   violations.check_range("damping.mass_per_s", spec.damping_mass, 0.0, 1e6, "1/s");
   violations.check_range("damping.stiffness_s", spec.damping_stiffness, 0.0, 1e3, "s");
   violations.check_range("gravity_m_s2", spec.gravity.norm(), 0.0, 1000.0, "m/s2");
-  if (spec.films.empty()) violations.add("films", "are none, must be at least 1");
+  if (spec.films.empty()) violations.add("films", "there are none; at least 1 is needed");
   check_count("films", spec.films.size(), kMaxFilms, violations);
   check_count("injections", spec.injections.size(), kMaxInjections, violations);
   check_count("probes", spec.probes.size(), kMaxProbes, violations);

@@ -5,11 +5,13 @@
 
 namespace lipofill::plan {
 
-/// Ranges of everything in a specification that needs no model to be judged: fat, time, damping, gravity, numbers of
-/// films, names. Field violations are named as in lipofill.v1.SimulationSpec, values in the units of those names.
+/// Checks the ranges of everything in a specification that needs no model to be judged: fat, time,
+/// damping, gravity, numbers of films, names. Field violations are named as in
+/// lipofill.v1.SimulationSpec, values in the units of those names.
 absl::Status check_plan(const SimulationSpec& spec);
 
-/// RESOURCE_EXHAUSTED naming the bound when the plan cannot take one more injection.
+/// Checks that the plan can take one more injection. RESOURCE_EXHAUSTED naming the bound when it
+/// cannot.
 absl::Status check_room_for_injection(const SimulationSpec& spec);
 
 }  // namespace lipofill::plan

@@ -14,7 +14,8 @@ namespace lipofill::plan {
 
 enum class CouplingMode { kExact, kLumped };
 enum class WallFriction { kNoSlip, kNone };
-/// What a simulation is for: to watch, or for the shape in the end, in as few steps as that takes.
+/// The purpose of a simulation: to be watched, or to find the final shape in as few steps as
+/// possible.
 enum class TimeGoal { kTransient, kSettledShape };
 enum class FilmWallKind { kTissue, kRigid, kWinkler };
 
@@ -29,7 +30,7 @@ struct NamedRegion {
   std::string name;
 };
 
-/// Where a field over the chart, 1 inside and 0 outside, is at least a half.
+/// The region in which a field over the chart, 1 inside and 0 outside, is at least a half.
 struct PaintedRegion {
   geometry::ScalarField cover;
 };

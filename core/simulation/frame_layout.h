@@ -18,7 +18,7 @@ struct SkinPoint {
   int cell = -1;
 };
 
-/// Where the values of a frame's meshes come from. Constant: a frame only gathers.
+/// The sources of the values of a frame's meshes. Constant: a frame only gathers.
 struct FrameLayout {
   std::vector<SkinPoint> skin;
   std::vector<SkinPoint> scan;                      ///< those of its vertices that move

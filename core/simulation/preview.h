@@ -9,7 +9,7 @@
 
 namespace lipofill::simulation {
 
-/// How far a preview was from the full result.
+/// The difference of a preview from the full result.
 struct PreviewDifference {
   double max = 0.0;     ///< of the displacement of the skin, over its nodes [m]
   double rms = 0.0;     ///< the same, root of the mean square [m]
@@ -23,11 +23,12 @@ struct PreviewDifference {
 /// Checked by tests/unit/simulation/preview_test.cc.
 class Preview {
  public:
-  /// Field violations where the coarse grid cannot hold the plan, for example a zone that none of its cells is in.
+  /// Creates a preview. Field violations when the coarse grid cannot hold the plan, for example for
+  /// a zone that none of its cells is in.
   static absl::StatusOr<std::unique_ptr<Preview>> create(std::shared_ptr<const model::FaceModel> model,
                                                          const plan::SimulationSpec& spec);
 
-  /// One step, as Simulation::advance_step. Fails when kMostSteps have not settled it.
+  /// Takes one step, as Simulation::advance_step. Fails when kMostSteps have not settled it.
   void advance_step();
   static constexpr uint64_t kMostSteps = 500;
 

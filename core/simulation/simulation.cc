@@ -149,7 +149,8 @@ double Simulation::Impl::first_step_to_try(double smallest) const {
   return 2.0 * dt > left ? 0.5 * left : dt;
 }
 
-/// When something happens next that a step may not run over: an injection starts or ends, or the simulation does.
+/// Time of the next event that a step may not run over: an injection starts or ends, or the
+/// simulation does.
 double Simulation::Impl::next_mark() const {
   return std::min(schedule.next_change(state.time), spec.end);
 }
@@ -186,7 +187,8 @@ void Simulation::Impl::accept(double dt) {
   decide_phase();
 }
 
-/// How far the skin has still to go, were its speed to fall on as it did over the last step; infinity when it rose.
+/// Estimates how far the skin has still to go, if its speed goes on falling as it did over the last
+/// step; infinity when it rose.
 double Simulation::Impl::estimate_settling_error(double last_speed, double dt) const {
   if (report.skin_speed == 0.0) return 0.0;
   if (report.skin_speed >= last_speed) return std::numeric_limits<double>::infinity();

@@ -99,13 +99,14 @@ struct FrameField {
 /// Checked by tests/unit/simulation/, tests/verification/ and tests/property/.
 class Simulation {
  public:
-  /// INVALID_ARGUMENT with field violations named as in lipofill.v1.SimulationSpec, values in the units of those names.
+  /// Creates a simulation. INVALID_ARGUMENT with field violations named as in
+  /// lipofill.v1.SimulationSpec, values in the units of those names.
   static absl::StatusOr<std::unique_ptr<Simulation>> create(std::shared_ptr<const model::FaceModel> model,
                                                             plan::SimulationSpec spec);
   ~Simulation();
 
-  /// One time step. Never throws. On failure phase() is kFailed with reason(), and the state stays that before the
-  /// step. Does nothing unless phase() is kRunning.
+  /// Takes one time step. Never throws. On failure phase() is kFailed with reason(), and the state
+  /// stays that before the step. Does nothing unless phase() is kRunning.
   void advance_step();
 
   Phase phase() const;
@@ -127,17 +128,22 @@ class Simulation {
   int n_hexahedra() const;
   int n_film_cells() const;
   int n_dofs() const;
-  /// What it takes in memory while it runs, its model left out: an estimate, within a factor of two for models of a
-  /// thousand hexahedra and more [B].
+  /// Memory that it takes while it runs, without its model: an estimate, within a factor of two for
+  /// models of a thousand hexahedra and more [B].
   uint64_t memory_bytes() const;
 
   /// The meshes at rest: "skin", "scan" (where the model has one), "film/<name>" for each film, "tissue".
   std::vector<MeshTopology> topology() const;
 
   /// Fields of the present state on the named meshes (all when empty):
-  ///   skin:   displacement [mm] (3), pressure [Pa] (of the film below, 0 where there is none), thickness [mm] (of that
-  ///   film) scan:   displacement [mm] (3), pressure [Pa] film/x: displacement [mm] (3) at points; thickness [mm],
-  ///   pressure [Pa], velocity [mm/s] (3), wet (0 or 1) on cells tissue: displacement [mm] (3) at points
+  ///
+  ///     skin:   displacement [mm] (3), pressure [Pa] (of the film below, 0 where there is none),
+  ///             thickness [mm] (of that film)
+  ///     scan:   displacement [mm] (3), pressure [Pa]
+  ///     film/x: displacement [mm] (3) at points; thickness [mm], pressure [Pa], velocity [mm/s] (3),
+  ///             wet (0 or 1) on cells
+  ///     tissue: displacement [mm] (3) at points
+  ///
   std::vector<FrameField> frame(const std::vector<std::string>& meshes) const;
 
   /// Skin and scan of another model of the same chart, moved and coloured by this simulation: the fields of frame() on

@@ -19,7 +19,8 @@ struct ProbePlace {
   int cell = 0;
 };
 
-/// What Simulation holds; its members are spread over simulation.cc (steps), step_report.cc, frames.cc and snapshot.cc.
+/// The members of Simulation; its functions are spread over simulation.cc (steps), step_report.cc,
+/// frames.cc and snapshot.cc.
 struct Simulation::Impl {
   std::shared_ptr<const model::FaceModel> model;
   plan::SimulationSpec spec;
@@ -35,7 +36,7 @@ struct Simulation::Impl {
   StepReport report;
   std::vector<LigamentReport> ligaments;
   double initial_volume = 0.0;
-  // What a step writes into again and again.
+  // Buffers that every step writes again.
   step::StepOutcome attempt;              ///< what came of the last try
   std::vector<Eigen::VectorXd> injected;  ///< a film [m3] (n_cells)
   std::vector<double> delivered_before;   ///< an injection [m3]

@@ -78,7 +78,7 @@ struct Reader {
   }
 };
 
-/// What no simulation ever is, whatever its numbers.
+/// False for a state that no simulation can reach, whatever its numbers.
 bool is_possible(const mechanics::SimulationState& state, int phase) {
   const bool is_phase = phase >= static_cast<int>(Phase::kRunning) && phase <= static_cast<int>(Phase::kFailed);
   const bool is_counted = state.slow_steps >= 0 && state.equal_steps >= 0 && state.late_iterations >= 0 &&

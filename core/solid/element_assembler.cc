@@ -23,7 +23,7 @@ HexStiffness compute_stiffness(const HexMesh& mesh, int hexahedron, const std::v
                                   : compute_solid_shell_stiffness(nodes, D);
 }
 
-/// Of each pair of nodes in binary order, whether the first comes before the second in the mesh.
+/// For each pair of nodes in binary order, true when the first comes before the second in the mesh.
 std::array<bool, kNodePairs> order_of_nodes(const std::array<int, 8>& hexahedron) {
   std::array<bool, kNodePairs> before{};
   for (int a = 0; a < 8; ++a) {

@@ -43,7 +43,7 @@ LIPOFILL_INLINE Lanes find_least_corner(const Point (&x)[8]) {
   return least;
 }
 
-/// s_k of all modes in place of the nodes.
+/// Puts s_k of all modes in place of the nodes.
 LIPOFILL_INLINE void transform_to_modes(Point (&x)[8]) {
   for (const int bit : kLinear) {
     for (int b = 0; b < 8; ++b) {
@@ -56,7 +56,7 @@ LIPOFILL_INLINE void transform_to_modes(Point (&x)[8]) {
   }
 }
 
-/// sum_k h_k(b) f_k of all nodes in place of the modes.
+/// Puts sum_k h_k(b) f_k of all nodes in place of the modes.
 LIPOFILL_INLINE void transform_to_nodes(Point (&f)[8]) {
   for (const int bit : kLinear) {
     for (int b = 0; b < 8; ++b) {
@@ -95,7 +95,7 @@ LIPOFILL_INLINE Lanes determinant(const LaneMatrix3& A, const LaneMatrix3& C) {
   return multiply_add(A.m[0][2], C.m[0][2], multiply_add(A.m[0][1], C.m[0][1], A.m[0][0] * C.m[0][0]));
 }
 
-/// One Newton step on R; returns the largest change of an entry.
+/// Takes one Newton step on R; returns the largest change of an entry.
 LIPOFILL_INLINE Lanes improve_rotation(LaneMatrix3& R) {
   LaneMatrix3 C;
   cofactors(R, C);
@@ -144,7 +144,7 @@ LIPOFILL_INLINE void find_rotation(const LaneMatrix3& F, const Lanes& det, LaneM
   }
 }
 
-/// (R^T v)_c.
+/// Returns (R^T v)_c.
 LIPOFILL_INLINE Lanes rotate_back(const LaneMatrix3& R, int c, const Lanes& x, const Lanes& y, const Lanes& z) {
   return multiply_add(R.m[2][c], z, multiply_add(R.m[1][c], y, R.m[0][c] * x));
 }

@@ -26,11 +26,12 @@ inline constexpr std::array<int, 8> kCornerOfBinary = {0, 1, 3, 2, 4, 5, 7, 6};
 /// Independent numbers of the modal stiffness, 3 x 3 block row by block row: the diagonal block's lower triangle, then
 /// the blocks left of it.
 inline constexpr int kModalNumbers = 171;
-/// And those of the lower blocks of an element matrix.
+/// Independent numbers of the lower blocks of an element matrix.
 inline constexpr int kStiffnessNumbers = 300;
 
-/// What the forces of kLanes hexahedra need. With h_k the products of local coordinates (the Hadamard basis of the
-/// eight nodes), s_k = sum_b h_k(b) x_b, the pose of an element is told by
+/// The data that the forces of kLanes hexahedra need. With h_k the products of local coordinates
+/// (the Hadamard basis of the eight nodes), s_k = sum_b h_k(b) x_b, the pose of an element is told
+/// by
 ///
 ///     F = [s_1 s_2 s_4] J_0^-1/8       gradient at the centre
 ///     q = (R^T F - I in Voigt order, shear doubled;  R^T s_k - S_k for the four hourglass modes k = 3, 5, 6, 7)
@@ -49,7 +50,8 @@ struct ElementBatch {
   void set_lane(int lane, const std::array<int, 8>& hexahedron, const HexNodes& positions, const HexStiffness& K);
 };
 
-/// What the tangent needs on top: the lower blocks of K_e, nodes in binary order, and where they go.
+/// The data that the tangent needs in addition: the lower blocks of K_e, nodes in binary order, and
+/// their places in the pattern.
 struct StiffnessBatch {
   /// Lower blocks of K_e [N/m] in the order in which they are read: of each node a the blocks (a, b), b < a, then the
   /// lower triangle of (a, a).
@@ -61,7 +63,7 @@ struct StiffnessBatch {
   void set_lane(int lane, const HexStiffness& K);
 };
 
-/// What is found of kLanes hexahedra on the way to their forces.
+/// Intermediate values of kLanes hexahedra, computed on the way to their forces.
 struct ElementPose {
   LaneMatrix3 gradient;  ///< F at the centre
   LaneMatrix3 rotation;  ///< R

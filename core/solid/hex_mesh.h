@@ -14,7 +14,8 @@ struct HexMesh {
   Eigen::Matrix3Xd rest_positions;            ///< [m]  (3, n_nodes)
   std::vector<std::array<int, 8>> hexahedra;  ///< node indices
   std::vector<int> material;                  ///< a material index a hexahedron
-  /// Whether the hexahedron is one of several through its layer: it takes the EAS-9 element, otherwise the solid-shell.
+  /// True for a hexahedron that is one of several through its layer: it takes the EAS-9 element,
+  /// all others the solid-shell.
   std::vector<bool> stacked;
 
   int n_nodes() const { return static_cast<int>(rest_positions.cols()); }

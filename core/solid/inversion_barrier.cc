@@ -116,7 +116,7 @@ double InversionBarrier::add_force(int hexahedron, const Eigen::Matrix4Xd& x, Ei
 
 void InversionBarrier::add_tangent(int hexahedron, const Eigen::Matrix4Xd& x, const SystemPattern& pattern,
                                    TangentValues& values) const {
-  // From edges to nodes: e_k = x_k - x_0.
+  // The map from edges to nodes: e_k = x_k - x_0.
   Eigen::Matrix<double, 9, 12> to_edges;
   to_edges << -Eigen::Matrix3d::Identity().replicate<3, 1>(), Hessian::Identity();
   for_each_squeezed_corner(hexahedron, x, [&](const Corner& corner) {

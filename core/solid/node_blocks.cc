@@ -7,7 +7,8 @@ namespace {
 
 constexpr unsigned kAllFree = 7;
 
-/// What of a column of a block is written: factor K + geometric, where that is K_G at its own component.
+/// The terms of one column of a block: the value written is factor K + geometric, where geometric
+/// is K_G at its own component.
 struct BlockColumn {
   const double* k;
   Lanes geometric;

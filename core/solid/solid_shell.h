@@ -6,13 +6,12 @@ namespace lipofill::solid {
 
 /// Stiffness (24, 24) of the solid-shell hexahedron, for layers one element thick:
 ///
-///   - the transverse shear strains 31 and 23 are taken at the mid-points of the edges of the mid-surface and
-///   interpolated linearly
-///     across, and the thickness strain 33 at the corners of the mid-surface (assumed natural strains: no shear or
-///     curvature thickness locking; Hauptmann & Schweizerhof 1998, Klinkel, Gruttmann & Wagner 1999);
-///   - seven enhanced modes, 11: xi, 22: eta, 33: zeta, xi zeta, eta zeta, 12: xi, eta (EAS-7: no membrane, thickness
-///   or volumetric
-///     locking).
+///   - the transverse shear strains 31 and 23 are taken at the mid-points of the edges of the
+///     mid-surface and interpolated linearly across, and the thickness strain 33 at the corners of
+///     the mid-surface (assumed natural strains: no shear or curvature thickness locking;
+///     Hauptmann & Schweizerhof 1998, Klinkel, Gruttmann & Wagner 1999);
+///   - seven enhanced modes, 11: xi, 22: eta, 33: zeta, xi zeta, eta zeta, 12: xi, eta (EAS-7: no
+///     membrane, thickness or volumetric locking).
 ///
 /// Passes membrane and bending patch tests on meshes distorted in the plane. zeta is the thickness direction. [N/m]
 /// @param nodes       rest positions [m], positive Jacobian

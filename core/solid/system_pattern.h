@@ -26,7 +26,8 @@ class SystemPattern {
   int n_values() const { return static_cast<int>(rows_.size()); }
   /// The pattern with values zero; columns ascending, rows ascending in each.
   Eigen::SparseMatrix<double> make_matrix() const;
-  /// Where the value of (max(i, j), min(i, j)) is; the nodes of the two must share a hexahedron or a group.
+  /// Returns the place of the value (max(i, j), min(i, j)); the nodes of the two must share a
+  /// hexahedron or a group.
   int find(int i, int j) const;
 
   /// The triangle in blocks, one a pair of coupled nodes with free components: those of node b's columns are

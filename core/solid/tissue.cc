@@ -55,7 +55,8 @@ void Tissue::begin(const Eigen::Matrix3Xd& x) {
   squeezed_.clear();
 }
 
-/// All but the hexahedra, and from nodes to degrees of freedom.
+/// Adds all other forces than those of the hexahedra, and gathers the sum from nodes to degrees of
+/// freedom.
 void Tissue::finish_force() {
   elastic_energy_ = totals_.elastic_energy;
   elastic_energy_ += structure_->prestress().add_force(positions_, force_);

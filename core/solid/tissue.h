@@ -32,12 +32,13 @@ struct RayleighDamping {
 /// consistent load. K_e is the solid-shell (solid_shell.h), in stacked layers EAS-9 (incompatible_modes.h). Degrees of
 /// freedom are the components of nodes that are not fixed, numbered node by node.
 ///
-/// What never changes is a TissueStructure, which tissues share; a tissue itself holds values. Deterministic:
-/// everything depends on the last assemble alone, summed in an order that the mesh decides. Checked by
-/// tests/unit/solid/ and tests/verification/solid/ (patch test, rigid rotation, clamped plate and others).
+/// The parts that never change are in a TissueStructure, which tissues share; a tissue itself holds
+/// values. Deterministic: everything depends on the last assemble alone, summed in an order that
+/// the mesh decides. Checked by tests/unit/solid/ and tests/verification/solid/ (patch test, rigid
+/// rotation, clamped plate and others).
 class Tissue {
  public:
-  /// INVALID_ARGUMENT as TissueStructure::create, and for damping out of bounds.
+  /// Creates a tissue. INVALID_ARGUMENT as TissueStructure::create, and for damping out of bounds.
   static absl::StatusOr<Tissue> create(HexMesh mesh, const std::vector<ElasticMaterial>& materials,
                                        NodeSupports supports, RayleighDamping damping,
                                        const std::vector<WallSpring>& springs = {});
@@ -63,7 +64,8 @@ class Tissue {
   /// A broken spring carries nothing from the next assemble on. All are intact at first.
   void set_spring_intact(int spring, bool intact) { springs_[spring].intact = intact; }
   bool spring_intact(int spring) const { return springs_[spring].intact; }
-  /// Of a spring at the last assemble: tension [N], 0 when slack or broken, and distance between its ends [m].
+  /// Tension of a spring [N], 0 when slack or broken, and the distance between its ends [m], both
+  /// at the last assemble.
   double spring_tension(int spring) const { return springs_[spring].tension; }
   double spring_length(int spring) const { return springs_[spring].length; }
 
@@ -88,8 +90,8 @@ class Tissue {
   /// infinity where positions are not finite.
   double min_volume_ratio() const { return totals_.min_volume_ratio; }
 
-  /// Whether the scaled Jacobian (hex_quality.h) of a hexahedron is not positive at the last assemble or compute_force,
-  /// which that finds on its way.
+  /// True when the scaled Jacobian (hex_quality.h) of a hexahedron was not positive at the last
+  /// assemble or compute_force, which find it on their way.
   bool is_folded() const { return totals_.is_folded; }
 
   const RayleighDamping& damping() const { return damping_; }

@@ -10,8 +10,8 @@
 
 namespace lipofill::solid {
 
-/// What TissueStructure::create refuses: INVALID_ARGUMENT with a violation for everything wrong, at most a few of each
-/// kind. Checked by tests/unit/solid/tissue_checks_test.cc.
+/// Checks the input of TissueStructure::create: INVALID_ARGUMENT with a violation for everything
+/// wrong, at most a few of each kind. Checked by tests/unit/solid/tissue_checks_test.cc.
 absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
                           const NodeSupports& supports, const std::vector<WallSpring>& springs = {});
 

@@ -16,19 +16,20 @@
 
 namespace lipofill::solid {
 
-/// How the nodes are held. Nodes may be in several entries; fixed wins over springs.
+/// The supports of the nodes. Nodes may be in several entries; fixed wins over springs.
 struct NodeSupports {
   std::vector<std::array<bool, 3>> fixed;  ///< a triple a node: x, y, z held at rest; empty: none held
   std::vector<double> spring;              ///< isotropic spring to the rest position, a value a node [N/m]; empty: none
 };
 
-/// All of a tissue that never changes: its mesh, numbering, element matrices and springs. Tissues share it
-/// (tissue.h); nothing in it is written once it is made, so threads may.
+/// The parts of a tissue that never change: its mesh, numbering, element matrices and springs.
+/// Tissues share it (tissue.h); nothing in it is written once it is made, so threads may.
 class TissueStructure {
  public:
-  /// INVALID_ARGUMENT with a violation each for sizes that disagree, a node index out of range or a node in no
-  /// hexahedron, a position that is not finite, a material or spring out of bounds, a hexahedron with a non-positive
-  /// Jacobian at a corner or Gauss point, naming it. Checked by tests/unit/solid/tissue_checks_test.cc.
+  /// Creates the structure. INVALID_ARGUMENT with a violation each for sizes that disagree, a node
+  /// index out of range or a node in no hexahedron, a position that is not finite, a material or
+  /// spring out of bounds, a hexahedron with a non-positive Jacobian at a corner or Gauss point,
+  /// naming it. Checked by tests/unit/solid/tissue_checks_test.cc.
   static absl::StatusOr<std::shared_ptr<const TissueStructure>> create(HexMesh mesh,
                                                                        const std::vector<ElasticMaterial>& materials,
                                                                        NodeSupports supports,

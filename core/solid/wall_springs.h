@@ -23,7 +23,7 @@ struct WallSpring {
 /// Groups of nodes that springs couple with one another: those of each spring whose weight is not zero.
 std::vector<std::vector<int>> collect_coupled_nodes(const std::vector<WallSpring>& springs);
 
-/// What changes of a spring.
+/// The part of a spring that changes.
 struct WallSpringState {
   bool intact = true;
   double tension = 0.0;  ///< [N]
@@ -36,11 +36,11 @@ struct WallSpringState {
 ///     energy = 1/2 k (|d| - L*)_+^2                                                             [J]
 ///     tangent = k n n^T + k (1 - L*/|d|) (I - n n^T)   while taut, else 0: positive semi-definite
 ///
-/// Where L* is zero (walls that touch, no slack) this is the linear spring f = k d with tangent k I, which a rest
-/// direction need not exist for; rest lengths below a billionth of the tissue's extent count as zero. A broken spring
-/// carries nothing. The part along n belongs to K (Rayleigh damping acts on it), the part across to K_G (tissue.h).
-/// Constant and shared; what changes of a spring is a WallSpringState. Checked by
-/// tests/unit/solid/wall_springs_test.cc.
+/// When L* is zero (walls that touch, no slack) this is the linear spring f = k d with tangent k I,
+/// which needs no rest direction; rest lengths below a billionth of the tissue's extent count as
+/// zero. A broken spring carries nothing. The part along n belongs to K (Rayleigh damping acts on
+/// it), the part across to K_G (tissue.h). Constant and shared; what changes of a spring is a
+/// WallSpringState. Checked by tests/unit/solid/wall_springs_test.cc.
 class WallSprings {
  public:
   /// The springs have been checked (tissue_checks.h); their nodes are coupled in `pattern`.
@@ -66,7 +66,7 @@ class WallSprings {
     int node;
     double coefficient;
   };
-  /// Where the nine values of a pair's block go in the pattern, -1: nowhere.
+  /// Places in the pattern of the nine values of a pair's block; -1 for none.
   using Block = std::array<std::int32_t, 9>;
 
   void add_terms(const WallSpring& spring, const SystemPattern& pattern);

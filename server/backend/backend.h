@@ -34,7 +34,7 @@ struct BackendOptions {
   CheckpointOptions checkpoints;
 };
 
-/// What the services share.
+/// Everything that the services share.
 struct Backend {
   Backend(const BackendOptions& the_options, Store& the_store, ScanFiles& scans, CheckpointFiles& checkpoints,
           Metrics& the_metrics)
@@ -53,14 +53,14 @@ struct Backend {
   CheckpointFiles& checkpoint_files;
   Metrics& metrics;
   std::atomic<bool> stopping = false;
-  /// Held while a parked simulation is brought back or deleted: one at a time.
+  /// This is held while a parked simulation is brought back or deleted: one at a time.
   std::mutex waking;
   ModelCache models{8};
   Operations operations;
   SessionManager sessions;
   ResultKeeper keeper;
   Courier courier;
-  /// Last: their threads use the others.
+  /// These come last: their threads use the others.
   WorkerPool workers;
   TaskPool calls{"calls", 2, 256};
   TaskPool builds{"builds", 2, 64};

@@ -17,12 +17,14 @@ struct SkinPatch {
   geometry::SurfaceMesh after;     ///< displaced; the same triangles
 };
 
-/// On a scan the triangles whose three vertices ride on the model, on a square the whole skin, each quadrilateral cut
-/// in two. DATA_LOSS when the arrays do not fit the model.
+/// Takes the skin that is compared: on a scan the triangles whose three vertices ride on the model,
+/// on a square the whole skin, each quadrilateral cut in two. DATA_LOSS when the arrays do not fit
+/// the model.
 absl::StatusOr<SkinPatch> make_skin_patch(const model::FaceModel& model, const v1::MeshSlice& meshes,
                                           const v1::FrameSlice& frame);
 
-/// RESOURCE_EXHAUSTED for a patch of more vertices than a response holds, CANCELLED once it is unwanted.
+/// Compares the patch with a target. RESOURCE_EXHAUSTED for a patch of more vertices than a
+/// response holds, CANCELLED once it is unwanted.
 absl::StatusOr<v1::Evaluation> evaluate(const SkinPatch& patch, const geometry::SurfaceMesh& target,
                                         const Unwanted& unwanted);
 

@@ -8,7 +8,8 @@
 namespace lipofill::server {
 namespace {
 
-/// By content: a simulation of the same name may have been deleted and run anew.
+/// Makes the key from the content: a simulation of the same name may have been deleted and run
+/// anew.
 std::string make_key(const SimulationResult& result, const Selection& selection) {
   Hasher hasher;
   for (const std::string& message : {result.meshes_message, result.frame_message}) {
@@ -19,7 +20,7 @@ std::string make_key(const SimulationResult& result, const Selection& selection)
                       absl::StrJoin(selection.fields, "\n"), selection.quantised ? "\n\nuint16" : "");
 }
 
-/// What was asked for, with every name checked against what there is.
+/// Returns the selection asked for; checks every name in it against those there are.
 absl::StatusOr<Selection> choose(const v1::MeshSlice& meshes, const v1::FrameSlice& frame,
                                  const ViewerOptions& options) {
   Topology known;

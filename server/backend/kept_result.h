@@ -23,7 +23,8 @@ class KeptResults {
  public:
   explicit KeptResults(Store& store) : store_(store) {}
 
-  /// NOT_FOUND without a result; field violations for meshes or fields that it has not.
+  /// Returns the messages that show a result. NOT_FOUND without a result; field violations for
+  /// meshes or fields that it has not.
   absl::StatusOr<std::shared_ptr<const KeptMessages>> show(const std::string& simulation, const ViewerOptions& options);
 
  private:

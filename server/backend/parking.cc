@@ -10,7 +10,7 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-/// Between two rounds.
+/// Time between two rounds.
 Seconds period(Seconds idle) {
   return std::clamp(idle / 4.0, Seconds(0.05), Seconds(30.0));
 }

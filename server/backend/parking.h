@@ -11,7 +11,8 @@
 
 namespace lipofill::server {
 
-/// Whether a simulation was parked: READY or PAUSED, kept on disk alone. Its summary is in the record then.
+/// True when a simulation is parked: READY or PAUSED, kept on disk alone. Its summary is in the
+/// record then.
 bool is_parked(const SimulationRecord& record);
 
 /// The session of a simulation, held; one that was parked is woken for it, which takes as long as building its model
@@ -23,7 +24,7 @@ absl::StatusOr<std::shared_ptr<Session>> find_or_wake(Backend& backend, const st
 /// their figures does not count.
 class ParkingAttendant {
  public:
-  /// `idle` 0: none is ever parked.
+  /// With `idle` 0 none is ever parked.
   ParkingAttendant(Backend& backend, std::chrono::duration<double> idle);
   ~ParkingAttendant();
 

@@ -52,7 +52,7 @@ absl::StatusOr<bool> ResultKeeper::keep_restore(const CommandRecord& command, Si
                                                 const std::string& spec_message, const RequestKey& request) {
   auto kept = store_.restore_simulation(command, state, spec_message, request);
   if (kept.ok() && *kept) {
-    // Automatic ones that were left off course are of no use.
+    // Automatic checkpoints that were left off course are of no use.
     store_.prune_checkpoints(command.simulation, options_.kept).IgnoreError();
     tidy(command.simulation);
   }
@@ -94,7 +94,7 @@ absl::StatusOr<CheckpointRecord> ResultKeeper::write_checkpoint(const Checkpoint
   const uint64_t bytes = snapshot.size() + simulation->spec_message.size();
   absl::Status room = check_room(bytes);
   if (!room.ok() && draft.kind == CheckpointKind::kAutomatic) {
-    // Better one than none: it takes the place of its elders.
+    // One checkpoint is better than none: it takes the place of the older ones.
     store_.prune_checkpoints(draft.simulation, 1).IgnoreError();
     tidy(draft.simulation);
     room = check_room(bytes);
@@ -171,7 +171,7 @@ absl::Status ResultKeeper::parked(const std::string& id, const SessionView& view
   if (!kept.ok()) return kept;
   if (!sessions_.remove_unless_held(id)) {
     store_.keep_summary(id, "").IgnoreError();
-    return absl::AbortedError("something is asked of it at this moment");
+    return absl::AbortedError("the simulation is in use at this moment");
   }
   metrics_.count_parked_simulation();
   return kept;

@@ -11,7 +11,7 @@
 
 namespace lipofill::server {
 
-/// Bounds of what is kept to go on from.
+/// Bounds of the checkpoints that are kept.
 struct CheckpointOptions {
   double interval_s = 10.0;                 ///< wall time between automatic ones; 0: none
   int kept = 3;                             ///< automatic ones a simulation
@@ -32,7 +32,8 @@ class ResultKeeper : public SessionSink {
   absl::StatusOr<bool> keep_restore(const CommandRecord& command, SimulationState state,
                                     const std::string& spec_message, const RequestKey& request) override;
   absl::StatusOr<uint64_t> begin_epoch(const std::string& id) override;
-  /// RESOURCE_EXHAUSTED naming the bound where there are too many, or too many bytes.
+  /// Keeps a checkpoint. RESOURCE_EXHAUSTED naming the bound when there are too many, or too many
+  /// bytes.
   absl::StatusOr<CheckpointRecord> keep_checkpoint(const CheckpointRecord& draft, const std::string& snapshot,
                                                    const std::vector<SeriesEntry>& rows,
                                                    const RequestKey& request) override;
@@ -44,7 +45,7 @@ class ResultKeeper : public SessionSink {
 
   /// Removes files of a simulation's checkpoints that are in no record any more.
   void tidy(const std::string& simulation) const;
-  /// OK when files of so many bytes more are within the bound.
+  /// Returns OK when files of so many bytes more are within the bound.
   absl::Status check_room(uint64_t bytes) const;
 
  private:

@@ -23,7 +23,7 @@ class SeriesFiller {
   explicit SeriesFiller(uint64_t after_step, v1::GetSeriesResponse& response)
       : last_step_(after_step), response_(response) {}
 
-  /// False when the response is full.
+  /// Adds rows; false when the response is full.
   bool add(v1::SeriesRow row) {
     if (row.step() <= last_step_) return true;
     const size_t bytes = row.ByteSizeLong() + 8;

@@ -40,7 +40,7 @@ absl::StatusOr<SimulationRecord> read_request(const Principal& caller, const v1:
   return record;
 }
 
-/// What a simulation that is only to be checked would be when it is created.
+/// Shows a simulation that is only to be checked as it would be once created.
 absl::StatusOr<v1::Simulation> show_checked(Backend& backend, const SimulationRecord& record,
                                             const v1::SimulationSpec& spec,
                                             std::unique_ptr<simulation::Simulation> simulation) {
@@ -119,7 +119,7 @@ absl::StatusOr<v1::Simulation> open_session(Backend& backend, SessionManager::Pl
                                             const SimulationRecord& record, std::shared_ptr<Session> session,
                                             bool start) {
   const auto ids = parse_model_name(record.model, "spec.model");
-  // From here on the model is held by the record, but it may have gone before that.
+  // The record holds the model from here on, but the model may have gone before that.
   const auto held = hold(session);
   absl::Status open = ids.ok() ? backend.store.get_model(ids->patient, ids->id).status() : ids.status();
   if (open.ok() && !backend.sessions.add(std::move(place), session)) {

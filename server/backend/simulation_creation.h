@@ -28,7 +28,7 @@ SessionOptions make_session_options(const Backend& backend, const SimulationReco
 absl::StatusOr<v1::Simulation> open_session(Backend& backend, SessionManager::Place place,
                                             const SimulationRecord& record, std::shared_ptr<Session> session,
                                             bool start);
-/// What an equal request made before; started now when it was not then.
+/// Returns the simulation that an equal request made before; starts it now if that request did not.
 absl::StatusOr<v1::Simulation> show_made_before(Backend& backend, const std::string& name, bool start);
 
 /// Deletes the record of a simulation and all that belongs to it. ABORTED when an etag is given that is not its.

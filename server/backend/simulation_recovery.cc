@@ -77,7 +77,7 @@ absl::StatusOr<v1::SimulationSpec> plan_at_start(const SimulationRecord& record,
 
 absl::StatusOr<Ground> find_ground(Backend& backend, const SimulationRecord& record,
                                    const std::vector<CommandRecord>& commands) {
-  // Without the model no checkpoint is any good, and none is to blame.
+  // No checkpoint is any good without the model, and none is to blame.
   if (auto model = backend.load_model(record.model); !model.ok()) return model.status();
   const auto candidates = list_candidates(backend, record.id);
   if (!candidates.ok()) return candidates.status();
@@ -105,7 +105,7 @@ absl::StatusOr<Ground> find_ground(Backend& backend, const SimulationRecord& rec
   return ground;
 }
 
-/// What was acknowledged beyond the ground.
+/// Collects the commands that were acknowledged after the checkpoint the simulation goes on from.
 absl::StatusOr<SessionHistory> history_from(const Ground& ground, const SimulationRecord& record,
                                             const std::vector<CommandRecord>& commands) {
   SessionHistory history;
@@ -152,7 +152,7 @@ absl::StatusOr<Revived> revive(Backend& backend, const SimulationRecord& record)
 absl::Status bring_back(Backend& backend, const SimulationRecord& record) {
   auto revived = revive(backend, record);
   if (!revived.ok()) return revived.status();
-  // What it was parked with is not true of it for long.
+  // The summary it was parked with soon no longer holds.
   if (auto cleared = backend.store.keep_summary(record.id, ""); !cleared.ok()) return cleared;
   backend.sessions.bring_back(record.tenant, revived->bytes, std::move(revived->session));
   return absl::OkStatus();

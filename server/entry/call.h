@@ -16,21 +16,23 @@ namespace lipofill::server {
 
 class CallGate;
 
-/// What the daemon knows of a call: at first what comes with it, then what its request is about.
+/// Everything the daemon knows of a call: at first its metadata, then also the resources its
+/// request names.
 struct Call {
   std::string method;      ///< "/lipofill.v1.PatientService/GetPatient"
   std::string request_id;  ///< the client's x-request-id, or one that was made for it
   std::string trace_id;    ///< of the client's W3C traceparent; empty without one
   std::string parent_id;   ///< the client's span, the same way
   Principal principal;     ///< who calls, once admitted
-  /// Why it is not to be carried out; whatever answers calls looks here first. A call that nobody has looked at is not.
+  /// The reason why the call is not to be carried out; whatever answers calls looks here first. A
+  /// call that nobody has looked at is refused.
   absl::Status refusal = absl::PermissionDeniedError("the call was not admitted");
   CallGate* gate = nullptr;
   std::vector<std::string> resources = {};  ///< that its request names, once it was checked
   std::string made = {};                    ///< the name of what it made
   bool begun = false;                       ///< the audit log has it
 
-  /// What lines of the log say of it.
+  /// The fields that lines of the log say of the call.
   LogFields log_fields() const;
 };
 
@@ -43,15 +45,15 @@ Call read_call(const std::string& method, const Metadata& metadata);
 /// The context of a call with what is known of it. Every call of a service of ours has one: see CallContextAllocator.
 class CallContext : public grpc::CallbackServerContext {
  public:
-  /// Shared with its watcher, which outlasts the context by a moment.
+  /// The call is shared with its watcher, which outlasts the context by a moment.
   const std::shared_ptr<Call> call = std::make_shared<Call>();
 };
 
-/// What is known of the call.
+/// Returns the Call that belongs to the context.
 Call& call_of(grpc::CallbackServerContext* context);
 
-/// gRPC gives contexts back through the base class whoever made them, also those of calls to methods there are not
-/// (they are generic): all must come from here.
+/// gRPC returns all contexts through the base class, no matter who made them, also those of generic
+/// calls to methods that do not exist: so all contexts must be made here.
 class CallContextAllocator : public grpc::ContextAllocator {
  public:
   grpc::CallbackServerContext* NewCallbackServerContext() override { return new CallContext; }

@@ -38,7 +38,8 @@ Credentials credentials_of(const Metadata& metadata, const grpc::ServerContextBa
   return credentials;
 }
 
-/// For the audit log, which a hostile request must not fill.
+/// Notes the resources a request names for the audit log, up to a bound: a hostile request must not
+/// fill the log.
 void note_resources(Call& call, const ResourceNames& names) {
   call.resources.clear();
   for (const std::string& name : names.whole) {
@@ -64,7 +65,8 @@ absl::Status no_resource(const std::string& name) {
   return absl::NotFoundError(absl::StrCat("there is no ", name));
 }
 
-/// What an answer has in its first field, where resources have their name; empty for anything else.
+/// Returns the first field of an answer, which for resources is their name; empty for anything
+/// else.
 std::string name_in(const grpc::ByteBuffer& message) {
   constexpr uint32_t kFirstFieldIsText = 0x0a;
   constexpr int kMaxName = 256;
@@ -123,8 +125,8 @@ absl::Status CallGate::check(Call& call, const google::protobuf::Message& reques
   return begin(call);
 }
 
-// Where nobody is asked who they are, there is nobody to hide things from: the method says what is not there, in its
-// own time.
+// When callers need not say who they are, resources are hidden from nobody: the gate lets the call
+// pass and the method itself reports the missing resource.
 absl::Status CallGate::check_owner(const Scope& scope, const absl::StatusOr<Owner>& owner, const std::string& name) {
   if (absl::IsNotFound(owner.status())) return authenticator_.asks() ? no_resource(name) : absl::OkStatus();
   if (!owner.ok()) return owner.status();

@@ -16,26 +16,29 @@
 
 namespace lipofill::server {
 
-/// What stands before every call, of any service: who calls, whether the method is for their role, whether what the
-/// request names is theirs, and the audit log. What is another's is answered as what is not there, before anything else
-/// of the request is looked at, so that no answer tells the two apart.
-/// Checked by tests/integration/security/.
+/// Checks every call before its method runs, whatever the service: who calls, whether the method is
+/// for their role, whether the request names only resources of theirs. It also writes the audit
+/// log. A resource of another tenant is answered like one that does not exist, before anything else
+/// of the request is looked at, so that no answer tells the two apart. Checked by
+/// tests/integration/security/.
 class CallGate {
  public:
   /// `audit` may be nullptr: nothing is written down then.
   CallGate(Backend& backend, const Authenticator& authenticator, AuditLog* audit)
       : backend_(backend), authenticator_(authenticator), audit_(audit) {}
 
-  /// With the metadata, before there is a request: fills in who calls. UNAUTHENTICATED, PERMISSION_DENIED, or
-  /// draining().
+  /// Admits a call by its metadata, before there is a request, and fills in who calls.
+  /// UNAUTHENTICATED, PERMISSION_DENIED, or draining().
   absl::Status admit(Call& call, const Metadata& metadata, const grpc::ServerContextBase& context);
-  /// What admit() said; what a request that is refused was about is noted where it is known who sent it.
+  /// Returns what admit() returned; when it refused a known caller, notes the resources the request
+  /// names.
   absl::Status check_admitted(Call& call, const google::protobuf::Message& request);
-  /// With the request, before the method looks at it; of a stream with every message. Calls that change something are
-  /// written to the audit log, durably, before they do: UNAVAILABLE when that cannot be.
+  /// Checks the request before the method looks at it; for a stream, every message. Calls that
+  /// change something are written to the audit log, durably, before they do: UNAVAILABLE when that
+  /// cannot be.
   absl::Status check(Call& call, const google::protobuf::Message& request);
-  /// Of callers whom nobody knows, a hundred a minute are written down: they must not fill the medium. The others are
-  /// counted, as all are, in the metrics.
+  /// Notes how a call ended. At most a hundred calls a minute by unknown callers are written down,
+  /// as they must not fill the medium. All are counted in the metrics.
   void note_end(const Call& call, const std::string& code);
   /// The answer of a call that makes something says how that is called.
   void note_answer(Call& call, const grpc::ByteBuffer& message);

@@ -15,7 +15,7 @@ using grpc::experimental::InterceptionHookPoints;
 using grpc::experimental::InterceptorBatchMethods;
 using Clock = std::chrono::steady_clock;
 
-/// Names of methods that there are not come from clients: no place for them in metrics and logs.
+/// Clients can send names of methods that do not exist; these have no place in metrics and logs.
 std::string name_of(const std::string& method) {
   return has_rule(method) ? method : "unknown";
 }
@@ -84,7 +84,7 @@ class CallWatcher : public grpc::experimental::Interceptor {
     const LogFields of_call = call_->log_fields();
     fields.insert(fields.end(), of_call.begin(), of_call.end());
     const LogScope scope(std::move(fields));
-    // Those who ask for health ask often.
+    // Health is asked for often, so it is logged at debug level.
     spdlog::log(absl::StartsWith(method_, "/grpc.") ? spdlog::level::debug : spdlog::level::info, "call");
     gate_.note_end(*call_, code_name);
   }

@@ -23,7 +23,7 @@
 namespace lipofill::server {
 namespace {
 
-/// Of the time to drain, for calls under way; the rest is for work that was begun.
+/// Share of the time to drain that calls under way may take; the rest is for work that was begun.
 constexpr double kShareForCalls = 0.25;
 constexpr GrpcServer::Seconds kMaxForCalls{5.0};
 constexpr GrpcServer::Seconds kToCutOff{1.0};
@@ -69,7 +69,7 @@ absl::Status cannot_listen(const std::string& address) {
                    is_unix(address) ? ": may this user make files in its directory?" : ": is the port taken?"));
 }
 
-/// For the daemon's user and group.
+/// Restricts UNIX sockets to the daemon's user and group.
 void restrict_sockets(const std::vector<std::string>& addresses) {
   for (const std::string& address : addresses) {
     if (!is_unix(address)) continue;
@@ -93,7 +93,7 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<
   // Debian builds absl, on whose mutexes gRPC runs, with its search for deadlocks, which takes part in every lock.
   absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
   grpc::EnableDefaultHealthCheckService(true);
-  // Named, so that the linker keeps the library.
+  // The library is named here so that the linker keeps it.
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   std::unique_ptr<GrpcServer> self(new GrpcServer(guard, backend));
   grpc::ServerBuilder builder;
@@ -138,7 +138,8 @@ bool GrpcServer::drain(Seconds delay, Seconds timeout) {
   return false;
 }
 
-// Shutdown() may never return: what a peer that is frozen does not take from its socket cannot be cancelled.
+// Shutdown() may never return: data that a frozen peer does not take from its socket cannot be
+// cancelled.
 std::future<void> GrpcServer::end_calls(Seconds grace) {
   const auto deadline = std::chrono::system_clock::now() + std::chrono::duration_cast<std::chrono::milliseconds>(grace);
   auto done = std::make_shared<std::promise<void>>();

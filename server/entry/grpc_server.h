@@ -18,7 +18,7 @@
 
 namespace lipofill::server {
 
-/// How the services are guarded.
+/// The guards of the services.
 struct ServiceGuard {
   const SecuritySettings& settings;
   const Authenticator& authenticator;
@@ -35,7 +35,7 @@ class GrpcServer {
   static absl::StatusOr<std::unique_ptr<GrpcServer>> start(const std::vector<std::string>& addresses,
                                                            const ServiceGuard& guard, Backend& backend);
 
-  /// Of the first address on TCP; 0 when there is none.
+  /// Port of the first address on TCP; 0 when there is none.
   int port() const { return port_; }
 
   using Seconds = std::chrono::duration<double>;
@@ -49,7 +49,7 @@ class GrpcServer {
 
  private:
   GrpcServer(const ServiceGuard& guard, Backend& backend);
-  /// Ready when the last call has ended; those that have not within `grace` are cancelled.
+  /// Becomes ready when the last call has ended; calls that have not within `grace` are cancelled.
   std::future<void> end_calls(Seconds grace);
 
   Backend& backend_;

@@ -6,14 +6,14 @@
 
 namespace lipofill::server {
 
-/// What a call does to the daemon.
+/// The effect of a call on the daemon.
 enum class Effect {
   kNone,    ///< looks
   kSteers,  ///< changes or ends what is there
   kBegins,  ///< brings in something new, or work: refused while the daemon drains
 };
 
-/// What a method does, and who may have it done.
+/// The effect of a method, and the role it needs.
 struct MethodRule {
   Effect effect = Effect::kNone;
   Role least = Role::kAdmin;
@@ -29,7 +29,7 @@ const MethodRule* rule_of(const std::string& method);
 /// new method must have its line in the table: tests/unit/server/call_test.cc walks all services.
 Effect effect_of(const std::string& method);
 
-/// Whether the table has it.
+/// True when the table has the method.
 bool has_rule(const std::string& method);
 
 }  // namespace lipofill::server

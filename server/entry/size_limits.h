@@ -8,15 +8,16 @@
 
 namespace lipofill::server {
 
-/// How large what clients bring may be; at most what the model itself bears.
+/// Limits on the size of what clients send; at most what the model itself bears.
 struct SizeLimits {
   uint64_t upload_bytes = 256'000'000;
   int hexahedra = 200'000;
   int film_cells = 65'536;
 };
 
-/// RESOURCE_EXHAUSTED with a violation below "spec" for what is larger, before anything is made of it. The message was
-/// checked otherwise. Checked by tests/integration/service/admission_test.cc.
+/// Checks a specification. RESOURCE_EXHAUSTED with a violation below "spec" for what is larger,
+/// before anything is made of it. The message was checked otherwise. Checked by
+/// tests/integration/service/admission_test.cc.
 absl::Status check_size(const v1::ModelSpec& spec, const SizeLimits& limits);
 absl::Status check_size(const v1::SimulationSpec& spec, const SizeLimits& limits);
 

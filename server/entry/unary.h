@@ -44,8 +44,8 @@ inline Unwanted caller_has_left(grpc::CallbackServerContext* context) {
   return [context] { return context->IsCancelled(); };
 }
 
-/// Whether a call is to be carried out with this request: admitted, a message this schema knows, and about nothing that
-/// is not the caller's. Every method begins with it.
+/// Checks whether a call is to be carried out with this request: it is admitted, its message is one
+/// this schema knows, and everything it names is the caller's. Every method begins with it.
 template <typename Request>
 absl::Status check_call(grpc::CallbackServerContext* context, const Request& request) {
   Call& call = call_of(context);
@@ -55,7 +55,7 @@ absl::Status check_call(grpc::CallbackServerContext* context, const Request& req
   return call.gate->check(call, request);
 }
 
-/// Of what goes on for a while: UNAUTHENTICATED once the caller's token has expired.
+/// Checks a call that goes on for a while: UNAUTHENTICATED once the caller's token has expired.
 inline absl::Status check_still_known(grpc::CallbackServerContext* context) {
   return call_of(context).principal.has_expired() ? token_expired() : absl::OkStatus();
 }
@@ -70,7 +70,7 @@ grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, const Req
   return reactor;
 }
 
-/// What a long call is told when too many wait already.
+/// Refuses a long call when too many wait already.
 inline absl::Status too_many_calls(const Backend& backend) {
   constexpr double retry_delay_s = 2.0;
   return shortage("TOO_MANY_CALLS", retry_delay_s,

@@ -51,7 +51,7 @@ void Courier::work() {
   }
 }
 
-/// False when it is to stop.
+/// Waits for work; false when it is to stop.
 bool Courier::await_streams(std::vector<std::weak_ptr<Stream>>& streams) {
   std::unique_lock lock(mutex_);
   while (!stopping_) {

@@ -30,13 +30,14 @@ class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<
                      std::shared_ptr<WatchStream>& stream);
   absl::Status watch_session(const v1::WatchRequest& request, const std::shared_ptr<Session>& session,
                              const std::shared_ptr<WatchStream>& stream);
-  /// Once it is woken.
+  /// Wakes the simulation and then watches it.
   absl::Status watch_parked(const v1::WatchRequest& request, const std::string& id,
                             const std::shared_ptr<WatchStream>& stream);
   absl::Status watch_kept(const v1::WatchRequest& request, const std::string& id,
                           const std::shared_ptr<WatchStream>& stream);
 
-  /// Of the bounded number of streams, held while one is open; nullptr when there is none left.
+  /// Takes a place among the bounded number of streams, held while the stream is open; nullptr when
+  /// there is none left.
   std::shared_ptr<void> take_place();
 
   Backend& backend_;

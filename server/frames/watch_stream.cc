@@ -141,7 +141,8 @@ void WatchStream::fetch() {
   }
 }
 
-/// Where it is not due yet, the courier looks again when it will be, or when the stream must end.
+/// Queues a heartbeat if one is due. Otherwise the courier looks again when it will be, or when the
+/// stream must end.
 void WatchStream::queue_due_heartbeat() {
   if (viewer_ == nullptr) return;
   const Courier::Clock::time_point due = last_sent_ + heartbeat_;

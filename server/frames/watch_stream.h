@@ -35,7 +35,7 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
         known_topology_hash_(std::move(known_topology_hash)),
         place_(std::move(place)) {}
 
-  /// Before it begins: it ends with UNAUTHENTICATED at this time.
+  /// Sets the time at which the stream ends with UNAUTHENTICATED; to be called before it begins.
   void end_at(Courier::Clock::time_point time) { expires_ = time; }
 
   /// A stream that shows what a session puts into the viewer, and a heartbeat where that was nothing for so long.
@@ -50,7 +50,7 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   void begin_kept(const std::shared_ptr<const KeptMessages>& kept);
   /// A stream that ends at once.
   void begin_failed(const absl::Status& status);
-  /// For the viewer: there is something to take. Never blocks.
+  /// Is called for the viewer when there is something to take. Never blocks.
   void wake();
 
   void deliver() override;

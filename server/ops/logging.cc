@@ -20,7 +20,7 @@ void append(spdlog::memory_buf_t& line, std::string_view text) {
   line.append(text.data(), text.data() + text.size());
 }
 
-/// What a pattern makes of a line, without an end of line.
+/// Formats a line by a pattern, without an end of line.
 std::unique_ptr<spdlog::pattern_formatter> make_pattern(const std::string& pattern) {
   return std::make_unique<spdlog::pattern_formatter>(pattern, spdlog::pattern_time_type::utc, "");
 }

@@ -12,7 +12,8 @@ using prometheus::Gauge;
 using prometheus::Histogram;
 using prometheus::Registry;
 
-/// From a tenth of a millisecond to ten seconds: steps of small squares and of large faces.
+/// Boundaries from a tenth of a millisecond to ten seconds, for steps of small squares and of large
+/// faces.
 const Histogram::BucketBoundaries kSeconds = {0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005, 0.01, 0.025,
                                               0.05,   0.1,     0.25,   0.5,   1.0,    2.5,   10.0};
 
@@ -71,7 +72,7 @@ Metrics::Metrics()
   auto& iterations = counters(registry_, "lipofill_solver_iterations_total", "Iterations of the solvers, by kind");
   const char* const kinds[] = {"film", "newton", "conjugate_gradient"};
   for (size_t i = 0; i < iterations_.size(); ++i) iterations_[i] = &iterations.Add({{"kind", kinds[i]}});
-  // From the start, so that the first refusal is an increase.
+  // These counters exist from the start, so that the first refusal is an increase.
   for (const char* reason : {"NO_CREDENTIALS", "ROLE_TOO_LOW", "PATIENT_NOT_YOURS"}) {
     calls_refused_.Add({{"reason", reason}});
   }

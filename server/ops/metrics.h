@@ -15,7 +15,7 @@
 
 namespace lipofill::server {
 
-/// What a step of a simulation took [s] and what its solver did.
+/// Duration of a step of a simulation [s] and the work of its solver.
 struct StepFigures {
   double wall_s = 0.0;
   double cpu_s = 0.0;  ///< of the thread; what the phases leave of it is bookkeeping
@@ -66,16 +66,16 @@ class Metrics {
   // Calls. Methods are those of registered services, so that there is a bounded number of them.
   MethodMetrics of_method(const std::string& method);
   void count_handled(const std::string& method, const std::string& code);
-  /// Of callers who may not, by one of a bounded number of reasons.
+  /// Counts a call that was refused to its caller, by one of a bounded number of reasons.
   void count_refused(const std::string& reason);
 
   /// A figure that is looked up at each scrape, by `refresh`.
   prometheus::Gauge& add_gauge(const std::string& name, const std::string& help, const prometheus::Labels& labels = {});
   prometheus::Counter& add_counter(const std::string& name, const std::string& help);
-  /// Called before each scrape, on the thread that serves it.
+  /// Adds a function that is called before each scrape, on the thread that serves it.
   void add_refresh(std::function<void()> refresh);
 
-  /// What a scrape takes; refreshes first.
+  /// Returns the figures of a scrape; refreshes them first.
   std::vector<prometheus::MetricFamily> collect() const;
 
  private:

@@ -57,7 +57,7 @@ absl::StatusOr<std::unique_ptr<MetricsServer>> MetricsServer::start(const std::s
   if (!bound)
     return absl::UnavailableError(absl::StrCat("metrics: cannot listen on ", address, "; is the port taken?"));
   self->http_->thread = std::thread([&server] { server.listen_after_bind(); });
-  // Before it runs it cannot be stopped.
+  // The server cannot be stopped before it runs.
   while (!server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return self;
 }

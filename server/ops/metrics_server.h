@@ -12,8 +12,8 @@ namespace lipofill::server {
 /// refreshes of the metrics look at. Checked by tests/integration/service/metrics_test.cc.
 class MetricsServer {
  public:
-  /// INVALID_ARGUMENT for an address that is no HOST:PORT, UNAVAILABLE when it cannot be listened on. The metrics must
-  /// live longer.
+  /// Starts the server. INVALID_ARGUMENT for an address that is no HOST:PORT, UNAVAILABLE when it
+  /// cannot be listened on. The metrics must live longer.
   static absl::StatusOr<std::unique_ptr<MetricsServer>> start(const std::string& address, const Metrics& metrics);
   ~MetricsServer();
 

@@ -63,7 +63,7 @@ CLI::Option* add_setting(CLI::App& app, const Setting& setting) {
   return option;
 }
 
-/// Without a value the program ends with `exit_code`.
+/// Reads the command line; when it returns none the program ends with `exit_code`.
 std::optional<CommandLine> read_command_line(int argc, char** argv, const std::vector<Setting>& settings,
                                              int& exit_code) {
   CommandLine line;

@@ -10,11 +10,11 @@
 
 namespace lipofill::server {
 
-/// How the daemon is set up.
+/// The settings of the daemon.
 struct Options {
   Options();
 
-  /// What to do in place of serving; at most one is given.
+  /// Tasks to do in place of serving; at most one is given.
   std::string backup_to;
   std::string restore_from;
 
@@ -50,7 +50,7 @@ struct Options {
 /// line, --help and --check follow.
 std::vector<Setting> settings_of(Options& options);
 
-/// What is wrong with values that are well formed each by itself. OK or field violations.
+/// Checks that values which are well formed one by one also fit together. OK or field violations.
 absl::Status check_options(const Options& options);
 
 /// Reads --config's file, the environment and the command line; what comes later wins. Without a value the program ends

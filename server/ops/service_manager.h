@@ -6,9 +6,10 @@
 
 namespace lipofill::server {
 
-/// What started the daemon and wants to hear from it, by systemd's protocol: datagrams to the UNIX socket
-/// NOTIFY_SOCKET, and a sign of life within every WATCHDOG_USEC. Without the variables nothing is sent. Checked by
-/// tests/unit/server/service_manager_test.cc and tests/integration/service/drain_test.cc.
+/// Reports to the service manager that started the daemon, by systemd's protocol: datagrams to the
+/// UNIX socket NOTIFY_SOCKET, and a sign of life within every WATCHDOG_USEC. Without the variables
+/// nothing is sent. Checked by tests/unit/server/service_manager_test.cc and
+/// tests/integration/service/drain_test.cc.
 class ServiceManager {
  public:
   /// Reads the environment.
@@ -18,7 +19,7 @@ class ServiceManager {
   void tell_stopping() const { send("STOPPING=1\nSTATUS=draining"); }
   void tell_alive() const { send("WATCHDOG=1"); }
 
-  /// How often to call tell_alive(): half of what is allowed. None without a watchdog.
+  /// Period of calls of tell_alive(): half of what is allowed; none without a watchdog.
   std::optional<std::chrono::microseconds> watchdog_period() const { return watchdog_period_; }
 
  private:

@@ -27,7 +27,7 @@ std::string range_text(const Setting& setting, const char* kind) {
   return absl::StrCat(kind, " in [", setting.low, ", ", setting.high, "]");
 }
 
-/// One text into one place; an empty answer is good, otherwise it says what the text must be.
+/// Assigns one text to one place; an empty answer is good, otherwise it says what the text must be.
 struct Assign {
   const Setting& setting;
   const std::vector<std::string>& texts;

@@ -32,7 +32,8 @@ struct Setting {
   bool is_list() const { return std::holds_alternative<std::vector<std::string>*>(target); }
 };
 
-/// What was given for a setting, and where: "--workers", "LIPOFILLD_WORKERS", "lipofilld.toml".
+/// The value given for a setting, and its source: "--workers", "LIPOFILLD_WORKERS",
+/// "lipofilld.toml".
 struct GivenValue {
   std::vector<std::string> texts;
   std::string source;

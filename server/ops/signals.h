@@ -6,8 +6,9 @@
 
 namespace lipofill::server {
 
-/// From here on SIGTERM and SIGINT wait for wait_for_signal(), whichever thread they reach; threads started later are
-/// not interrupted by them. SIGPIPE and SIGXFSZ are ignored. To be called once, before the first thread is started.
+/// Keeps SIGTERM and SIGINT, from here on, for wait_for_signal(), whichever thread they reach;
+/// threads started later are not interrupted by them. SIGPIPE and SIGXFSZ are ignored. To be called
+/// once, before the first thread is started.
 void take_signals();
 
 /// Waits for SIGTERM or SIGINT and returns its number. Meanwhile calls `tick` every period, where there is one.

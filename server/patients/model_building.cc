@@ -65,12 +65,12 @@ absl::Status check_complete(Backend& backend, const std::string& patient, const 
                          absl::StatusCode::kFailedPrecondition);
 }
 
-/// What is wrong with a specification without building anything, fields below "spec".
+/// Checks a specification without building anything; names fields below "spec".
 absl::Status check_spec(Backend& backend, const std::string& patient, const v1::BuildModelRequest& request) {
   FieldViolations violations;
   if (!request.has_spec()) return field_violation("spec", "is missing");
   auto face = to_face_model_spec(request.spec());
-  // That there will be one is enough here.
+  // It is enough here that there will be one.
   if (face.ok() && !request.spec().scan_region().bone_scan().empty()) face->bone.emplace();
   violations.absorb("spec", face.ok() ? model::check_face_model(*face) : face.status());
   const auto scans = scans_of(patient, request.spec());
@@ -154,7 +154,7 @@ absl::StatusOr<std::optional<OperationView>> find_earlier(Backend& backend, cons
   return backend.operations.add_done(patient_name(patient), request, to_model(*record).SerializeAsString());
 }
 
-/// What a request that is only to be checked is answered when nothing is wrong with it.
+/// The answer to a request that is only to be checked, when nothing is wrong with it.
 OperationView checked_only(const v1::BuildModelRequest& request) {
   v1::Model model;
   *model.mutable_spec() = fill_tissue_figures(request.spec());

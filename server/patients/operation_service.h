@@ -5,7 +5,7 @@
 
 namespace lipofill::server {
 
-/// As it is on the wire, with its place in the queue of builds while it waits.
+/// The operation as the wire has it, with its place in the queue of builds while it waits.
 v1::Operation to_operation(const Backend& backend, const OperationView& view);
 
 /// Long-running operations. See proto/lipofill/v1/operation_service.proto.

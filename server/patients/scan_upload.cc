@@ -186,7 +186,7 @@ absl::StatusOr<ScanRecord> ScanUploads::complete(const std::string& patient, con
   const std::lock_guard lock(mutex_);
   completing_.erase(scan_name(patient, scan));
   if (record.ok()) {
-    // Complete for good: after a loss of power too.
+    // The scan is complete for good: after a loss of power too.
     if (auto flushed = backend_.scan_files.flush(patient, scan); !flushed.ok()) return flushed;
     if (auto kept = backend_.store.complete_scan(patient, scan, record->report_message); !kept.ok()) return kept;
     record->complete = true;

@@ -28,7 +28,8 @@ class ScanUploads {
   /// Adds a chunk. INVALID_ARGUMENT for a wrong offset (naming the right one), too many bytes, a scan that is complete.
   absl::StatusOr<ScanRecord> receive(const std::string& patient, const std::string& scan, uint64_t offset,
                                      const std::string& data);
-  /// Once all bytes are here; may take seconds. INVALID_ARGUMENT for bytes that are not those announced or no surface.
+  /// Completes a scan once all bytes are here; may take seconds. INVALID_ARGUMENT for bytes that
+  /// are not those announced or no surface.
   absl::StatusOr<ScanRecord> complete(const std::string& patient, const std::string& scan);
 
   grpc::ServerReadReactor<v1::UploadScanRequest>* upload(grpc::CallbackServerContext* context, v1::Scan* response);

@@ -5,14 +5,15 @@
 
 namespace lipofill::server {
 
-/// So many of something in each period. Thread-safe. Checked by tests/unit/security/authenticator_test.cc.
+/// Allows so many of something in each period. Thread-safe. Checked by
+/// tests/unit/security/authenticator_test.cc.
 class Allowance {
  public:
   using Clock = std::chrono::steady_clock;
 
   Allowance(int most, Clock::duration period) : most_(most), period_(period) {}
 
-  /// False when the period has had its share.
+  /// Takes one; false when the period has had its share.
   bool take(Clock::time_point now = Clock::now()) {
     const std::lock_guard lock(mutex_);
     if (now >= end_) {

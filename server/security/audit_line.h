@@ -7,7 +7,7 @@
 
 namespace lipofill::server {
 
-/// What the audit log says of one call, before it or after.
+/// The content of one line of the audit log, written before or after a call.
 struct AuditEntry {
   std::string subject;
   std::string tenant;

@@ -120,7 +120,7 @@ absl::StatusOr<std::shared_ptr<AuditLog::File>> AuditLog::write(const AuditEntry
     is_torn_ = false;
     return file_;
   }
-  // What is there stays, and the next line carries on from it.
+  // The part that was written stays, and the next line follows it.
   const absl::Status error = cannot("write", path_);
   if (written > before.size()) {
     head_.hash = hash_of_line(line.substr(0, written - before.size()));
@@ -135,7 +135,7 @@ absl::Status AuditLog::rotate() {
   if (auto flushed = file_->flush(); !flushed.ok()) return flushed;
   const std::string kept = absl::StrCat(path_, absl::StrFormat(".%012d", head_.number));
   const bool is_kept = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, kept.c_str(), RENAME_NOREPLACE) == 0;
-  // It was renamed before, and there was no room for a new one then.
+  // The file is missing if it was renamed before and there was no room for a new one then.
   if (!is_kept && errno != ENOENT) return cannot("rename to keep", kept);
   auto file = File::open(path_);
   if (!file.ok()) return file.status();

@@ -10,11 +10,12 @@
 
 namespace lipofill::server {
 
-/// Who did what to which pseudonymous id, and how it ended: a JSON object a line, each with the hash of the line
-/// before, so that a line that was changed, taken out or put in is found (verify_audit). Lines are only ever added
-/// (O_APPEND). A file that has grown to its size is renamed to "{file}.{number of its last line}" and stays: nothing is
-/// ever deleted, that is for whoever archives it. Thread-safe.
-/// Checked by tests/unit/security/audit_log_test.cc and tests/integration/security/audit_test.cc.
+/// Records who did what to which pseudonymous id, and how it ended: a JSON object a line, each with
+/// the hash of the line before, so that a line that was changed, taken out or put in is found
+/// (verify_audit). Lines are only ever added (O_APPEND). A file that has grown to its size is
+/// renamed to "{file}.{number of its last line}" and stays: nothing is ever deleted, that is for
+/// whoever archives it. Thread-safe. Checked by tests/unit/security/audit_log_test.cc and
+/// tests/integration/security/audit_test.cc.
 class AuditLog {
  public:
   /// Goes on after the last line there is, also one that a loss of power cut short. FAILED_PRECONDITION when the file
@@ -24,9 +25,10 @@ class AuditLog {
   AuditLog(const AuditLog&) = delete;
   AuditLog& operator=(const AuditLog&) = delete;
 
-  /// Written, and on the medium some time later: at the next durable line or the end of the file.
+  /// Appends an entry, which is on the medium some time later: at the next durable line or the end
+  /// of the file.
   absl::Status append(const AuditEntry& entry);
-  /// On the medium when it returns.
+  /// Appends an entry, which is on the medium when it returns.
   absl::Status append_durably(const AuditEntry& entry);
 
   AuditHead head() const;
@@ -45,7 +47,7 @@ class AuditLog {
   bool is_torn_ = false;  ///< the file ends within a line
 };
 
-/// What was found in files of an audit log.
+/// Findings from the files of an audit log.
 struct AuditSummary {
   uint64_t lines = 0;
   uint64_t torn_lines = 0;  ///< cut short by a loss of power, and yet those that were written

@@ -7,7 +7,7 @@
 
 namespace lipofill::server {
 
-/// Where an audit log goes on.
+/// The end of an audit log, from which it goes on.
 struct AuditTail {
   AuditHead head;
   bool is_torn = false;  ///< its file ends within a line

@@ -11,7 +11,7 @@
 
 namespace lipofill::server {
 
-/// What a call has to say who makes it.
+/// The parts of a call that say who makes it.
 struct Credentials {
   std::vector<std::string> authorization;  ///< values of the metadata "authorization"
   bool has_certificate = false;            ///< that the client's authorities have signed
@@ -25,14 +25,14 @@ struct Credentials {
 /// machine. Thread-safe. Checked by tests/unit/security/authenticator_test.cc and tests/integration/security/.
 class Authenticator {
  public:
-  /// INVALID_ARGUMENT with a violation for every file that cannot be used.
+  /// Opens the files. INVALID_ARGUMENT with a violation for every file that cannot be used.
   static absl::StatusOr<std::unique_ptr<Authenticator>> open(const SecuritySettings& settings);
 
-  /// Whether callers must say who they are.
+  /// True when callers must say who they are.
   bool asks() const { return tokens_ != nullptr || certificates_ != nullptr; }
 
-  /// UNAUTHENTICATED with a reason: NO_CREDENTIALS, TOKEN_..., CERTIFICATE_UNKNOWN, CREDENTIALS_DISAGREE for a token of
-  /// another tenant than its certificate.
+  /// Finds who calls. UNAUTHENTICATED with a reason: NO_CREDENTIALS, TOKEN_...,
+  /// CERTIFICATE_UNKNOWN, CREDENTIALS_DISAGREE for a token of another tenant than its certificate.
   absl::StatusOr<Principal> identify(const Credentials& credentials) const;
 
  private:

@@ -8,14 +8,15 @@
 
 namespace lipofill::server {
 
-/// Who holds certificates of one name.
+/// The holder of certificates of one name.
 struct CertificateEntry {
   bool is_alternative = false;  ///< a subject alternative name, not the common name
   std::string name;
   Principal principal;
 };
 
-/// Who holds which client certificate. Checked by tests/unit/security/certificate_map_test.cc.
+/// Maps client certificates to their holders. Checked by
+/// tests/unit/security/certificate_map_test.cc.
 class CertificateMap {
  public:
   /// JSON: {"certificates": [{"common_name": "planner-3", "tenant": "ward3", "roles": ["planner"]}, ...]}; in place of
@@ -23,7 +24,8 @@ class CertificateMap {
   /// address); "patients" as in tokens. INVALID_ARGUMENT naming the entry and what is wrong with it.
   static absl::StatusOr<CertificateMap> parse(const std::string& text);
 
-  /// Who the holder of a certificate with these names is; nullptr for nobody. Where several entries fit, the first.
+  /// Returns the holder of a certificate with these names; nullptr for none. If several entries
+  /// fit, it is the first.
   const Principal* find(const std::vector<std::string>& common_names,
                         const std::vector<std::string>& alternative_names) const;
 

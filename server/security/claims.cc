@@ -37,7 +37,7 @@ bool names(const Json* audience, const std::string& expected) {
   return *audience == expected;
 }
 
-/// Absent, or whole seconds since 1970.
+/// Reads a time, which is absent or whole seconds since 1970.
 absl::StatusOr<std::optional<TimePoint>> read_time(const Json& claims, const char* name) {
   const Json* value = find(claims, name);
   if (value == nullptr) return std::nullopt;

@@ -6,17 +6,18 @@
 
 namespace lipofill::server {
 
-/// What every token must say to be taken, beside being signed.
+/// Claims that every token must make to be accepted, besides being signed.
 struct ClaimRules {
   std::string issuer;
   std::string audience;
   std::chrono::seconds clock_skew{30};  ///< how far the clocks of issuer and daemon may be apart
 };
 
-/// Who a token speaks of. Claims: iss and aud as the rules have them (aud a text or a list), exp, nbf and iat where
-/// present, sub (1 to 256 bytes), tenant, roles (a list; the highest counts), and where it is limited to some patients
-/// `patients`, a list of ids. UNAUTHENTICATED with a reason for each way to be wrong.
-/// Checked by tests/unit/security/claims_test.cc.
+/// Returns the person of whom a token speaks. Claims: iss and aud as the rules have them (aud a
+/// text or a list), exp, nbf and iat where present, sub (1 to 256 bytes), tenant, roles (a list;
+/// the highest counts), and where it is limited to some patients `patients`, a list of ids.
+/// UNAUTHENTICATED with a reason for each way to be wrong. Checked by
+/// tests/unit/security/claims_test.cc.
 absl::StatusOr<Principal> read_claims(const nlohmann::json& claims, const ClaimRules& rules,
                                       Principal::Clock::time_point now);
 

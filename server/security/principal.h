@@ -8,7 +8,7 @@
 
 namespace lipofill::server {
 
-/// What somebody may do. Each role may do what those before it may.
+/// The rights of a caller. Each role may do everything that those before it may.
 enum class Role {
   kNone,     ///< is known, and may do nothing
   kViewer,   ///< looks
@@ -17,14 +17,15 @@ enum class Role {
 };
 
 const char* role_name(Role role);
-/// kNone for a word that is no role.
+/// Returns kNone for a word that is no role.
 Role role_of(const std::string& word);
 
 /// A tenant's name: a lower-case letter, then up to 30 of a-z and 0-9. Without '-', so that an id that begins with
 /// "{tenant}-" is one tenant's alone.
 bool is_tenant(const std::string& text);
 
-/// Who calls. By default the user of this machine, to whom a daemon without authentication belongs.
+/// The caller. By default it is the user of this machine, to whom a daemon without authentication
+/// belongs.
 struct Principal {
   using Clock = std::chrono::system_clock;
 

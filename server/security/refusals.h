@@ -7,17 +7,17 @@
 
 namespace lipofill::server {
 
-/// Nobody knows who calls: UNAUTHENTICATED with a reason of its own, "TOKEN_EXPIRED".
+/// Refuses a caller whom nobody knows: UNAUTHENTICATED with a reason of its own, "TOKEN_EXPIRED".
 inline absl::Status unauthenticated(const std::string& reason, const std::string& message) {
   return with_hints(absl::UnauthenticatedError(message), {reason, {}});
 }
 
-/// It is known who calls, and that they may not: PERMISSION_DENIED.
+/// Refuses a known caller who may not do this: PERMISSION_DENIED.
 inline absl::Status permission_denied(const std::string& reason, const std::string& message) {
   return with_hints(absl::PermissionDeniedError(message), {reason, {}});
 }
 
-/// For what goes on longer than the token by which it began.
+/// Ends a call that goes on longer than the token with which it began.
 inline absl::Status token_expired() {
   return unauthenticated("TOKEN_EXPIRED", "the token has expired; call again with a new one");
 }

@@ -7,7 +7,8 @@
 
 namespace lipofill::server {
 
-/// How the daemon is guarded. Empty file names: not set up. Secrets are in files, never in settings.
+/// The settings by which the daemon is guarded. An empty file name turns its feature off. Secrets
+/// are in files, never in settings.
 struct SecuritySettings {
   std::string tls_certificate_file;  ///< PEM: the certificate, then those between it and its authority
   std::string tls_key_file;
@@ -25,14 +26,15 @@ struct SecuritySettings {
   bool has_tls() const { return !tls_certificate_file.empty(); }
   bool has_tokens() const { return !token_keys_file.empty(); }
   bool has_certificates() const { return !client_certificates_file.empty(); }
-  /// Whether callers must say who they are.
+  /// True when callers must say who they are.
   bool has_authentication() const { return has_tokens() || has_certificates(); }
-  /// Where the audit log goes; empty: nowhere. Where callers say who they are there is always one.
+  /// Path of the audit log; empty for none. There always is one when callers must say who they are.
   std::string audit_file_in(const std::string& data_directory) const;
 };
 
-/// What is wrong with the settings, field violations by their names: files that cannot be used, a key that is not its
-/// certificate's, one without what belongs to it. Checked by tests/integration/security/settings_test.cc.
+/// Checks the settings and returns field violations by their names: files that cannot be used, a
+/// key that is not its certificate's, a setting without another that it needs. Checked by
+/// tests/integration/security/settings_test.cc.
 absl::Status check_security(const SecuritySettings& settings);
 
 }  // namespace lipofill::server

@@ -54,7 +54,7 @@ absl::StatusOr<TokenParts> take_token_apart(const std::string& token) {
   return taken;
 }
 
-// Of the library only its signatures: what claims must be is checked elsewhere.
+// Only the signatures of the library are used: the claims are checked elsewhere.
 bool is_signed_by(const std::string& token, const TokenKey& key) {
   try {
     const size_t last_dot = token.rfind('.');

@@ -20,8 +20,9 @@ struct TokenParts {
 /// header and claims that are JSON objects, an algorithm, and no extension that must be understood ("crit").
 absl::StatusOr<TokenParts> take_token_apart(const std::string& token);
 
-/// Whether the token was signed by the owner of the key, with the key's own algorithm, whatever the token says of
-/// algorithms. Only for tokens that could be taken apart. cpp-jwt is called here and nowhere else.
+/// True when the token was signed by the owner of the key, with the key's own algorithm, whatever
+/// the token says of algorithms. It takes only tokens that could be taken apart. cpp-jwt is called
+/// here and nowhere else.
 bool is_signed_by(const std::string& token, const TokenKey& key);
 
 }  // namespace lipofill::server

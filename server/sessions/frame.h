@@ -59,7 +59,7 @@ struct Frame {
   std::vector<simulation::FrameField> fields;
   EncodingCache encodings;
 
-  /// "<mesh>.<field>" of all.
+  /// Names "<mesh>.<field>" of all fields.
   std::vector<std::string> field_names() const {
     std::vector<std::string> names;
     for (const auto& field : fields) names.push_back(field.mesh + "." + field.name);

@@ -5,7 +5,7 @@
 
 namespace lipofill::server {
 
-/// `prefix` and 16 random hexadecimal digits: an id for a resource whose maker gave none.
+/// Makes an id for a resource whose maker gave none: `prefix` and 16 random hexadecimal digits.
 std::string make_id(char prefix);
 
 /// Microseconds since 1970.

@@ -43,12 +43,13 @@ class Operations {
     OperationView operation;
     bool is_new = true;  ///< false: an equal request started it before
   };
-  /// INVALID_ARGUMENT for a request id that was used for another request, UNAVAILABLE once stop() was called.
+  /// Starts an operation. INVALID_ARGUMENT for a request id that was used for another request,
+  /// UNAVAILABLE once stop() was called.
   absl::StatusOr<Started> start(const std::string& target, const RequestKey& request);
   /// Adds one that is done already: a request repeated after a restart.
   OperationView add_done(const std::string& target, const RequestKey& request, std::string response_message);
 
-  /// For the work: false asks it to stop.
+  /// Reports the progress of the work; false asks the work to stop.
   bool report(const std::string& id, double progress, const std::string& stage);
   void finish(const std::string& id, absl::StatusOr<std::string> response_message);
   /// Forgets one whose work never began.
@@ -56,7 +57,7 @@ class Operations {
 
   absl::StatusOr<OperationView> get(const std::string& id) const;
   absl::StatusOr<Owner> owner_of(const std::string& id) const;
-  /// Of what the scope has.
+  /// Lists the operations within the scope.
   std::vector<OperationView> list(const Scope& scope, const Page& page) const;
   /// The reply comes when it is done, its progress is not `seen_progress`, or the timeout has passed. On any thread.
   void wait(const std::string& id, std::chrono::milliseconds timeout, std::optional<double> seen_progress, Reply reply);

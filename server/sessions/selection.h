@@ -6,20 +6,21 @@
 
 namespace lipofill::server {
 
-/// What of a frame a viewer is shown, and how. Viewers of equal selections share one encoding.
+/// The parts of a frame that a viewer is shown, and their encoding. Viewers of equal selections
+/// share one encoding.
 struct Selection {
   std::vector<std::string> meshes;
   std::vector<std::string> fields = {};  ///< "<mesh>.<field>"; empty: all of the meshes
   bool quantised = false;                ///< uint16 over a box in place of float32
 
   bool has_mesh(const std::string& mesh) const { return std::find(meshes.begin(), meshes.end(), mesh) != meshes.end(); }
-  /// By the full name, of a mesh that is selected.
+  /// True for a field, by its full name, of a mesh that is selected.
   bool has_field(const std::string& field) const {
     return fields.empty() || std::find(fields.begin(), fields.end(), field) != fields.end();
   }
 };
 
-/// "film/deep" of "film/deep.pressure".
+/// Returns "film/deep" of "film/deep.pressure".
 inline std::string mesh_of(const std::string& array) {
   return array.substr(0, array.rfind('.'));
 }

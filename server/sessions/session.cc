@@ -70,7 +70,8 @@ bool Session::mailbox_empty() const {
   return mailbox_.empty();
 }
 
-// Whoever fails to get the lock may leave: its holder looks at the mailbox again after letting go.
+// Carries out commands if it gets the lock. Whoever fails to get it may leave: its holder looks at
+// the mailbox again after letting go.
 void Session::carry_out_when_idle() {
   while (!mailbox_empty()) {
     const std::unique_lock lock(execution_, std::try_to_lock);
@@ -138,7 +139,7 @@ WorkerPool::Next Session::take_turn() {
   return next;
 }
 
-/// Whether there is a step to take, now or when its time comes.
+/// True when there is a step to take, now or when its time comes.
 bool Session::takes_steps() const {
   return simulation_ != nullptr && !suspended_ && (catching_up_ || view_.state == SimulationState::kRunning);
 }
@@ -206,7 +207,7 @@ void Session::finish(SimulationState state, const std::string& reason) {
   let_go();
 }
 
-/// Of all that only a simulation that has not ended needs.
+/// Releases everything that only a simulation that has not ended needs.
 void Session::let_go() {
   viewers_.clear();
   simulation_ = nullptr;

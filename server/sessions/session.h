@@ -42,8 +42,8 @@ struct RestoreOrder {
   std::string spec_message;
 };
 
-/// What was acknowledged before the daemon was started again, as far as it is not in the state the session goes on
-/// from. Commands take effect after the same steps as the first time.
+/// The commands acknowledged before the daemon was started again that are not yet in the state the
+/// session goes on from. They take effect after the same steps as the first time.
 struct SessionHistory {
   SimulationState state = SimulationState::kReady;
   double wall_s = 0.0;  ///< spent RUNNING
@@ -78,7 +78,8 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
 
   const std::string& id() const { return options_.id; }
 
-  /// Lets one that was brought back go on. Once, when it is where others find it.
+  /// Lets a session that was brought back go on. It is called once, when others can find the
+  /// session.
   void go_on();
 
   /// Commands. The reply comes within one step, on any thread: FAILED_PRECONDITION naming the state where it does not
@@ -88,7 +89,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   void resume(RequestKey request, Reply reply);
   void stop(std::string reason, RequestKey request, Reply reply);
   void inject(InjectionOrder order, RequestKey request, Reply reply);
-  /// What inject() would add, or why it would not.
+  /// Returns the injection that inject() would add, or the reason why it would not.
   using InjectionReply = std::function<void(absl::StatusOr<plan::InjectionSpec>)>;
   void foresee(InjectionOrder order, InjectionReply reply);
   void restore(RestoreOrder order, RequestKey request, Reply reply);
@@ -103,15 +104,17 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   /// Keeps the present state, unless it is kept already or can be had at no cost.
   using Done = std::function<void(absl::Status)>;
   void save(Done done);
-  /// For the end of the daemon: no step and no command any more, the state kept.
+  /// Suspends the session when the daemon ends: it keeps its state and takes no step and no command
+  /// any more.
   void suspend(Done done);
 
-  /// How long nothing was asked of it but figures; 0 while it runs, is watched, is held or catches up. Without waiting.
+  /// Time since anything but figures was asked of it; 0 while it runs, is watched, is held or
+  /// catches up. Does not wait.
   Clock::duration idle_time() const;
-  /// By hold(), or by a command that waits for its turn.
+  /// True when it is held by hold(), or by a command that waits for its turn.
   bool is_held() const { return holders_ > 0 || !mailbox_empty(); }
-  /// If it still is idle for so long, keeps its state and figures, after which it answers nothing any more but that it
-  /// is parked.
+  /// Parks the session if it still is idle for so long: keeps its state and figures, after which it
+  /// answers nothing any more but that it is parked.
   void park(std::chrono::duration<double> idle);
 
   /// Shows the meshes and the present frame to the viewer, then every frame it wants, until unwatch() or the end.
@@ -139,7 +142,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   void carry_out_when_idle();
   bool mailbox_empty() const;
 
-  // All below: with `execution_` held.
+  // Everything below needs `execution_` held.
   void carry_out_commands();
   absl::Status guarded(const std::function<absl::Status()>& act);
   void answer(const Reply& reply, const std::function<absl::Status()>& act);

@@ -1,4 +1,5 @@
-// How a session keeps its state, goes back to one, and goes on after the daemon was started again.
+// The checkpoints of a session: it keeps its state, goes back to one, and goes on after the daemon
+// was started again.
 
 #include <algorithm>
 #include <exception>

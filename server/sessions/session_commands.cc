@@ -1,4 +1,4 @@
-// What clients ask of a session.
+// The commands that clients give a session.
 
 #include <algorithm>
 #include <exception>
@@ -89,7 +89,7 @@ void Session::pause(RequestKey request, Reply reply) {
         set_state(SimulationState::kPaused, "");
         show_to_viewers(true);
         spdlog::info("simulations/{} paused at step {}", options_.id, view_.report.step);
-        // After the answer, which it need not wait for.
+        // This comes after the answer, which need not wait for it.
         queue([this] {
           if (options_.checkpoint_interval_s > 0.0) save_now().IgnoreError();
         });
@@ -183,7 +183,8 @@ void Session::abandon(std::function<absl::Status()> forget, Reply reply) {
 
 void Session::checkpoint(std::string checkpoint, RequestKey request, CheckpointReply reply) {
   post([this, checkpoint, request, reply] {
-    // By way of command(), so that it waits until the session has caught up; its view is not wanted.
+    // This goes through command(), so that it waits until the session has caught up; its view is
+    // not wanted.
     const auto kept = std::make_shared<absl::StatusOr<CheckpointRecord>>(absl::UnknownError(""));
     const auto pass_on = [kept, reply](const absl::StatusOr<SessionView>& view) {
       reply(view.ok() ? std::move(*kept) : view.status());

@@ -1,4 +1,5 @@
-// What is known of a session: its view between two steps, and the rows of its series on their way to the sink.
+// The figures of a session: its view between two steps, and the rows of its series on their way to
+// the sink.
 
 #include <algorithm>
 #include <iterator>
@@ -70,7 +71,7 @@ void Session::update_view() {
   view_.cost = cost_;
 }
 
-/// From now on, when there is no simulation to take them from.
+/// Shows these figures from now on, when there is no simulation to take them from.
 void Session::show_figures(SessionView view) {
   const std::lock_guard lock(view_mutex_);
   view_ = std::move(view);

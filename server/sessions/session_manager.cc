@@ -160,7 +160,7 @@ void SessionManager::suspend_all() {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
-  // What could not be kept is in the log; the simulation then goes on from an earlier state.
+  // State that could not be kept is in the log; the simulation then goes on from an earlier one.
   ask_all([](Session& session, Session::Done done) {
     session.close_viewers(draining());
     session.suspend(std::move(done));

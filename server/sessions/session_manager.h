@@ -13,7 +13,7 @@
 
 namespace lipofill::server {
 
-/// What the simulations in memory may be and take together.
+/// Bounds on all simulations in memory together.
 struct SessionBounds {
   int simulations = 64;
   int simulations_per_tenant = 64;
@@ -33,7 +33,8 @@ class SessionManager {
         : manager_(std::exchange(other.manager_, nullptr)), tenant_(std::move(other.tenant_)), bytes_(other.bytes_) {}
     Place& operator=(Place&&) = delete;
     ~Place();
-    /// Of memory, once it is known how much it will take. RESOURCE_EXHAUSTED naming the bound.
+    /// Claims memory, once it is known how much the session will take. RESOURCE_EXHAUSTED naming
+    /// the bound.
     absl::Status claim(uint64_t bytes);
 
    private:
@@ -44,29 +45,31 @@ class SessionManager {
     uint64_t bytes_ = 0;
   };
 
-  /// RESOURCE_EXHAUSTED naming the bound; draining() once suspend_all() was called.
+  /// Reserves room for a session. RESOURCE_EXHAUSTED naming the bound; draining() once
+  /// suspend_all() was called.
   absl::StatusOr<Place> reserve(const std::string& tenant);
-  /// False once suspend_all() was called.
+  /// Adds the session; false once suspend_all() was called.
   [[nodiscard]] bool add(Place place, std::shared_ptr<Session> session);
-  /// For a look at it: it may be parked at any moment.
+  /// Finds a session only to look at it: it may be parked at any moment.
   std::shared_ptr<Session> find(const std::string& id) const;
-  /// For whoever is about to ask something of it; see hold(Session).
+  /// Finds a session that is about to be asked something; see hold(Session).
   std::shared_ptr<Session> hold(const std::string& id) const;
   void remove(const std::string& id);
-  /// False when it is held: then it stays.
+  /// Removes the session, unless it is held: then it stays and this returns false.
   [[nodiscard]] bool remove_unless_held(const std::string& id);
   /// Adds one that was there before the daemon was started again, whatever the bounds, and lets it go on.
   void bring_back(const std::string& tenant, uint64_t bytes, std::shared_ptr<Session> session);
 
   /// Has every session keep its state; they go on meanwhile. Returns when all are done, with the first error.
   absl::Status checkpoint_all();
-  /// For the end of the daemon: takes no more sessions, ends viewers' streams with draining(), has every session keep
-  /// its state and take no step or command any more. Returns when all are done.
+  /// Ends all sessions when the daemon ends: takes no more of them, ends viewers' streams with
+  /// draining(), has every session keep its state and take no step or command any more. Returns
+  /// when all are done.
   void suspend_all();
   /// Figures of all, each as after its last step.
   std::vector<SessionView> cached_views() const;
   std::vector<std::shared_ptr<Session>> all() const;
-  /// What they take, as far as it is known.
+  /// Memory that they take, as far as it is known.
   uint64_t memory_bytes() const;
 
  private:
@@ -79,7 +82,7 @@ class SessionManager {
   /// Has all sessions act, each in its own time, and waits for them; the first error.
   absl::Status ask_all(const Act& act) const;
 
-  // With the mutex held.
+  // These must be called with the mutex held.
   void take(const std::string& tenant);
   void give_back(const std::string& tenant, uint64_t bytes);
   std::shared_ptr<Session> take_out(const std::string& id);
@@ -87,7 +90,7 @@ class SessionManager {
   const SessionBounds bounds_;
   mutable std::mutex mutex_;
   std::map<std::string, Entry> sessions_;
-  /// Of sessions and places that are reserved.
+  /// Number of sessions and of reserved places.
   int n_taken_ = 0;
   std::map<std::string, int> n_taken_by_;
   uint64_t bytes_taken_ = 0;

@@ -1,5 +1,6 @@
-// What a session does before its first step where a preview is asked for: the settled shape of a coarse model, a step
-// at a time between commands as its own steps are, shown to viewers and in the end compared with the result.
+// The preview of a session, made before its first step if one is asked for: the settled shape of a
+// coarse model. It takes a step at a time between commands as the session's own steps do, is shown
+// to viewers and in the end compared with the result.
 
 #include <exception>
 
@@ -92,7 +93,7 @@ void Session::note_changed_plan(const std::string& why) {
   note_preview(view);
 }
 
-/// Once the simulation has ended: how far the preview was from it.
+/// Measures, once the simulation has ended, how far the preview was from it.
 void Session::judge_preview() {
   if (!view_.preview) return;
   PreviewView view = *view_.preview;

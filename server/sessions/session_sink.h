@@ -56,15 +56,17 @@ struct SessionView {
   int viewers = 0;
 };
 
-/// Where a session leaves what must last. Called on whichever thread runs the session, between steps; what returns OK
-/// is on the medium.
+/// Durable storage of a session. It is called on whichever thread runs the session, between steps;
+/// anything for which it returns OK is on the medium.
 class SessionSink {
  public:
   virtual ~SessionSink() = default;
 
-  /// Whether an equal request was kept before. INVALID_ARGUMENT when its id stands for another one.
+  /// True when an equal request was kept before. INVALID_ARGUMENT when its id stands for another
+  /// one.
   virtual absl::StatusOr<bool> was_kept(const RequestKey& request) = 0;
-  /// Before the command takes effect. False: an equal request was kept before, and this one is not.
+  /// Keeps a command before it takes effect. False: an equal request was kept before, and this one
+  /// is not.
   virtual absl::StatusOr<bool> keep_command(const CommandRecord& command, const RequestKey& request) = 0;
   /// The same for an injection, whose message is the payload, with the start that it was resolved to [s].
   virtual absl::StatusOr<bool> keep_injection(const CommandRecord& command, double start_s,
@@ -80,12 +82,12 @@ class SessionSink {
                                                            const std::vector<SeriesEntry>& rows,
                                                            const RequestKey& request) = 0;
   virtual absl::Status append_series(const std::string& id, const std::vector<SeriesEntry>& rows) = 0;
-  /// After every step, for figures of the daemon; must not block.
+  /// Is called after every step, for figures of the daemon; must not block.
   virtual void stepped(const SeriesEntry&) {}
-  /// Its state was kept just before and it is at rest: after this succeeds the session can be forgotten, and another be
-  /// made of what was kept. ABORTED when somebody holds it: it stays.
+  /// Parks a session at rest whose state was kept just before: after this succeeds the session can
+  /// be forgotten, and another be made of what was kept. ABORTED when somebody holds it: it stays.
   virtual absl::Status parked(const std::string& id, const SessionView& view) = 0;
-  /// After this succeeds the session can be forgotten: the store knows all of it.
+  /// Ends a session: after this succeeds it can be forgotten, as the store knows all of it.
   virtual absl::Status ended(const std::string& id, const SessionView& view, const Topology& topology,
                              const Frame& frame) = 0;
 };

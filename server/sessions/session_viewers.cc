@@ -1,4 +1,4 @@
-// What a session shows: its meshes, and frames to whoever watches.
+// The viewers of a session: the meshes it shows, and frames for everyone who watches.
 
 #include <algorithm>
 #include <exception>
@@ -83,8 +83,8 @@ std::shared_ptr<const Frame> Session::make_frame(const std::vector<std::string>&
   return frame;
 }
 
-/// Viewers who ask for no rate get what screens show, and many of them no more together than the daemon sends for a
-/// twentieth of what short steps take.
+/// Sets the rate of viewers who ask for none: that of screens, and less when they are many, so that
+/// sending to all of them takes a twentieth of the time of short steps.
 void Session::share_rate() {
   constexpr double kScreenRate = 60.0;
   constexpr double kSharedRate = 480.0;

@@ -9,8 +9,8 @@
 
 namespace lipofill::server {
 
-/// What whoever wants more than there is now is told: RESOURCE_EXHAUSTED with the reason "TOO_MANY_..." or "NO_...",
-/// and when to try again.
+/// Answers a caller who wants more than there is now: RESOURCE_EXHAUSTED with the reason
+/// "TOO_MANY_..." or "NO_...", and when to try again.
 inline absl::Status shortage(std::string reason, double retry_delay_s, absl::string_view message) {
   return with_hints(absl::ResourceExhaustedError(message), {std::move(reason), retry_delay_s});
 }

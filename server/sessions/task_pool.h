@@ -17,13 +17,14 @@ class TaskPool {
   TaskPool(const std::string& name, int n_threads, size_t max_queued);
   ~TaskPool();
 
-  /// False when too much waits already or the pool has stopped. The work must not throw. The label is for position().
+  /// Adds a task; false when too much waits already or the pool has stopped. The work must not
+  /// throw. The label is for position().
   [[nodiscard]] bool run(std::function<void()> work, std::string label = "");
   /// Carries out what is queued (whoever waits for an answer gets one), then joins. Idempotent.
   void stop();
-  /// What waits now.
+  /// Number of tasks that wait now.
   size_t queue_depth() const;
-  /// Place in the queue of what was given this label: 1 is the next; 0: it does not wait.
+  /// Place in the queue of the work with this label: 1 is the next; 0 when it does not wait.
   size_t position(const std::string& label) const;
   size_t max_queued() const { return max_queued_; }
 

@@ -14,7 +14,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Sorted and each once, so that viewers who ask for the same in another order share what is made for them.
+/// Sorts the names and drops repeated ones, so that viewers who ask for the same in another order
+/// share what is made for them.
 void sort_out(std::vector<std::string>& names) {
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
@@ -105,8 +106,9 @@ void Viewer::offer(std::shared_ptr<const Frame> frame) {
   wake_();
 }
 
-/// A preview was seen by who saw a step after it. The last frame says that it is the last one, even to who saw the same
-/// state before.
+/// True when the viewer has seen the frame's state before. It has seen a preview if it saw any step
+/// after it. The last frame is never skipped: it tells the viewer that it is the last, also when it
+/// saw the same state before.
 bool Viewer::was_seen(const Frame& frame) const {
   if (frame.end) return false;
   if (!frame.preview && frame.sequence == offered_sequence_) return true;

@@ -44,8 +44,8 @@ struct EndOfStream {
 };
 using ToSend = std::variant<std::monostate, TopologyToSend, FrameToSend, EndOfStream>;
 
-/// What one watcher has yet to be sent. The session puts in and never waits; the stream takes out as fast as its client
-/// reads.
+/// Queue of what one watcher has yet to be sent. The session puts frames in and never waits; the
+/// stream takes them out as fast as its client reads.
 ///
 /// kLatest keeps one frame, and the preview beside it: a newer one takes its place and the skipped one is counted.
 /// kEvery keeps all up to a number of bytes; one frame more ends the stream with RESOURCE_EXHAUSTED. Where the client
@@ -59,10 +59,10 @@ class Viewer {
   /// block.
   Viewer(ViewerOptions options, std::function<void()> wake);
 
-  // For the session.
+  // These are called by the session.
   void show_topology(std::shared_ptr<const Topology> topology);
-  /// Whether a frame of this simulated time is due at the interval, and for the clock. At rest the clock does not
-  /// count: no later frame may come.
+  /// True when a frame of this simulated time is due by the interval and by the clock. At rest the
+  /// clock does not count: no later frame may come.
   bool wants(double time_s, bool at_rest = false, Clock::time_point now = Clock::now()) const;
   void offer(std::shared_ptr<const Frame> frame);
   /// The simulated time of what comes may be earlier than that of what came.
@@ -72,17 +72,18 @@ class Viewer {
   bool closed() const;
   /// The meshes it is shown. INVALID_ARGUMENT naming one that there is not.
   absl::Status choose_meshes(const Topology& topology);
-  /// Once the meshes are known: whether all fields asked for are among those of a frame, by full name.
+  /// Checks, once the meshes are known, that all fields asked for are among those of a frame, by
+  /// full name.
   absl::Status check_fields(const std::vector<std::string>& known) const;
   const Selection& selection() const { return selection_; }
   bool shares_rate() const { return options_.shares_rate; }
   void set_max_rate(double max_rate_hz);
 
-  /// From the client: the frame of this sequence and all before it have been taken. INVALID_ARGUMENT for one that was
-  /// not sent.
+  /// Notes that the client has taken the frame of this sequence and all before it. INVALID_ARGUMENT
+  /// for one that was not sent.
   absl::Status acknowledge(uint64_t epoch, uint64_t sequence);
 
-  // For the stream.
+  // These are called by the stream.
   size_t unacknowledged() const;
   ToSend take(Clock::time_point now = Clock::now());
 
@@ -91,7 +92,8 @@ class Viewer {
   void skip_waiting_frames();
   void queue_frame(std::shared_ptr<const Frame> frame);
   FrameToSend take_frame(Clock::time_point now);
-  /// Of viewers who share a rate at the same moments, so that one frame is made and encoded for all.
+  /// The next moment a frame is due. It is the same for all viewers who share a rate, so that one
+  /// frame is made and encoded for all.
   Clock::time_point find_next_due(Clock::time_point now) const;
   bool must_wait() const;
 

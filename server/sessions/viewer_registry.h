@@ -16,9 +16,9 @@ class ViewerRegistry {
  public:
   /// A viewer of the same name, which its client has left for this one, is closed with ABORTED.
   void add(const std::string& simulation, const std::string& name, std::shared_ptr<Viewer> viewer);
-  /// Unless another has taken its place.
+  /// Removes the viewer, unless another has taken its place.
   void remove(const std::string& simulation, const std::string& name, const std::shared_ptr<Viewer>& viewer);
-  /// nullptr when there is none.
+  /// Finds a viewer; nullptr when there is none.
   std::shared_ptr<Viewer> find(const std::string& simulation, const std::string& name) const;
 
  private:

@@ -26,7 +26,7 @@ class WorkerPool {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// What a task wants after its turn.
+  /// The wish of a task after its turn: nothing, another turn at once, or one later.
   struct Next {
     enum Kind { kNothing, kAgain, kLater } kind = kNothing;
     Clock::time_point when = {};  ///< kLater
@@ -35,14 +35,14 @@ class WorkerPool {
   class Task {
    public:
     virtual ~Task() = default;
-    /// Must not throw.
+    /// Takes a turn; must not throw.
     virtual Next take_turn() = 0;
   };
 
   explicit WorkerPool(int n_workers, size_t max_active = std::numeric_limits<size_t>::max());
   ~WorkerPool();
 
-  /// Whoever calls makes sure that the pool does not have the task already.
+  /// Schedules a task. The caller makes sure that the pool does not have it already.
   void schedule(std::shared_ptr<Task> task, const std::string& group = "");
   /// Place in the queue, as things stand: 1 is the next; 0: it does not wait in it.
   size_t queue_position(const Task& task) const;

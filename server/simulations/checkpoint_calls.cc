@@ -142,7 +142,7 @@ absl::Status no_session_for(const char* what, const SimulationRecord& record) {
     return absl::FailedPreconditionError(absl::StrCat(cannot, " is ", state_name(record.state)));
   }
   if (record.reason.empty()) {
-    // Its record is there, and can be listed, a moment before its session is.
+    // The record is there, and can be listed, a moment before the session is.
     constexpr double retry_delay_s = 0.1;
     return with_hints(absl::UnavailableError(absl::StrCat(cannot, " is being made, try again")),
                       {"BEING_MADE", retry_delay_s});

@@ -11,8 +11,9 @@ namespace lipofill::server {
 
 v1::Checkpoint to_checkpoint(const CheckpointRecord& record);
 
-/// Why a command finds no session: FAILED_PRECONDITION for a simulation that has ended, UNAVAILABLE for one that could
-/// not be brought back, or that is still being made (reason BEING_MADE, to be tried again).
+/// The error of a command that finds no session: FAILED_PRECONDITION for a simulation that has
+/// ended, UNAVAILABLE for one that could not be brought back, or that is still being made (reason
+/// BEING_MADE, to be tried again).
 absl::Status no_session_for(const char* what, const SimulationRecord& record);
 
 /// Keeps the state of a live simulation, or finds the checkpoint that an equal request made.

@@ -38,7 +38,8 @@ Session::Reply reply_to(Backend& backend, const std::string& id, Reactor* reacto
   };
 }
 
-/// What is wrong with an injection is named below "injection"; an etag that does not fit is none of its fields.
+/// Puts the violations of an injection below "injection"; an etag that does not match is not one of
+/// its fields.
 absl::Status name_injection(const absl::Status& status) {
   return absl::IsAborted(status) ? status : with_prefix("injection", status);
 }
@@ -65,8 +66,8 @@ void foresee_injection(Session& session, const InjectionOrder& order, const v1::
   });
 }
 
-/// What becomes of a command when there is no session: the simulation has ended, perhaps by an equal request, or could
-/// not be brought back.
+/// Answers a command when there is no session: the simulation has ended, perhaps by an equal
+/// request, or could not be brought back.
 absl::Status answer_without_session(Backend& backend, const SimulationRecord& record, const char* what,
                                     const RequestKey& key, v1::Simulation& response) {
   const auto earlier = backend.store.find_request(key);
@@ -211,7 +212,7 @@ Reactor* SimulationService::DeleteSimulation(Context* context, const v1::DeleteS
     return reactor;
   }
   return answer(context, request, [&] {
-    // None may be woken meanwhile.
+    // No simulation may be woken meanwhile.
     const std::lock_guard lock(backend_.waking);
     return id.ok() ? delete_simulation_record(backend_, *id, request->etag()) : id.status();
   });

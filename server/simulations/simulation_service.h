@@ -48,7 +48,7 @@ class SimulationService : public v1::SimulationService::CallbackService {
       Context* context, const v1::ExportTissueDeckRequest* request) override;
 
  private:
-  /// What an answer gets beside what is in the store.
+  /// Adds to an answer what the store does not hold.
   using Amend = std::function<void(v1::Simulation& simulation)>;
   using Act = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
   /// Has the session act and answers with the simulation as it is then; FAILED_PRECONDITION when it has ended, unless

@@ -51,7 +51,7 @@ class Staging {
   fs::path file(const std::string& path) const { return root_ / path; }
 
  private:
-  /// What backups that did not end well left.
+  /// Removes the files of backups that did not finish.
   static void sweep(const fs::path& data) {
     std::error_code error;
     std::vector<fs::path> left;
@@ -81,7 +81,8 @@ absl::StatusOr<std::vector<std::string>> files_of(Database& database) {
   return paths;
 }
 
-/// With the daemon's writes held up, so that no file goes whose record is in the reader's view of the database.
+/// Links the files with the daemon's writes held up, so that no file goes whose record is in the
+/// reader's view of the database.
 absl::Status link_files(Database& writer, Database& reader, const fs::path& data, Staging& staging) {
   const Transaction hold(writer);
   if (!hold.status().ok()) return hold.status();
@@ -127,7 +128,7 @@ std::string to_text(const Sums& sums) {
   return text;
 }
 
-/// DATA_LOSS for a line that is none, or a path that leads elsewhere.
+/// Reads the sums. DATA_LOSS for a line that is none, or a path that leads elsewhere.
 absl::StatusOr<Sums> read_sums(const fs::path& root) {
   const auto text = read_whole_file(root / kSums, kMaxSumsBytes);
   if (!text.ok()) {
@@ -228,7 +229,7 @@ absl::StatusOr<BackupReport> restore_store(const fs::path& source, const fs::pat
     if (path == kDatabase) continue;
     if (absl::Status copied = copy(path, data / path); !copied.ok()) return copied;
   }
-  // Last and in one go: without it there is no store.
+  // The database comes last and in one go: without it there is no store.
   const fs::path draft = data / absl::StrCat(kDatabase, ".new");
   if (absl::Status copied = copy(kDatabase, draft); !copied.ok()) return copied;
   fs::rename(draft, directory->database(), error);

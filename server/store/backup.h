@@ -10,13 +10,13 @@
 
 namespace lipofill::server {
 
-/// What a backup or a restore copied.
+/// The amount that a backup or a restore copied.
 struct BackupReport {
   int files = 0;
   uint64_t bytes = 0;
 };
 
-/// Told after every file.
+/// It is called after every file.
 using BackupProgress = std::function<void(const BackupReport& so_far)>;
 
 /// Copies a store to a new directory, while a daemon serves it or not: the database as it is at one moment, and the

@@ -11,7 +11,7 @@
 
 namespace lipofill::server {
 
-/// What a checkpoint's file holds: all that a simulation goes on from, given its model.
+/// Content of a checkpoint's file: everything that a simulation needs to go on, besides its model.
 struct CheckpointContent {
   std::string simulation;    ///< id
   uint64_t step = 0;         ///< of the state
@@ -19,7 +19,7 @@ struct CheckpointContent {
   std::string snapshot;      ///< simulation::Simulation::snapshot()
 };
 
-/// Largest file that is written or read.
+/// Largest size of a file that is written or read.
 inline constexpr uint64_t kMaxCheckpointBytes = uint64_t{1} << 30;
 
 /// A checkpoint as the bytes of its file, little-endian:
@@ -27,8 +27,9 @@ inline constexpr uint64_t kMaxCheckpointBytes = uint64_t{1} << 30;
 ///     "LIPOCKPT"  u32 version = 1  u32 0  u64 size of the body  SHA-256 of the body, 32 bytes
 ///     body: u64 step, then simulation, spec_message and snapshot, each a u64 length and its bytes
 std::string encode_checkpoint(const CheckpointContent& content);
-/// DATA_LOSS saying what does not fit; no length is believed beyond the bytes that are there.
-/// Checked by tests/unit/server/checkpoint_files_test.cc with every bit flipped and every length cut.
+/// Decodes a checkpoint. DATA_LOSS saying what does not fit; no length is believed beyond the bytes
+/// that are there. Checked by tests/unit/server/checkpoint_files_test.cc with every bit flipped and
+/// every length cut.
 absl::StatusOr<CheckpointContent> decode_checkpoint(std::string_view bytes);
 
 /// The SHA-256 that the file's header says its body has, in hex; empty when there is no header.
@@ -44,10 +45,12 @@ class CheckpointFiles {
     uint64_t size_bytes = 0;
     std::string sha256;  ///< of the file's body
   };
-  /// Whole and on the medium, or not at all. RESOURCE_EXHAUSTED when there is no room or it is too large.
+  /// Writes the file whole and on the medium, or not at all. RESOURCE_EXHAUSTED when there is no
+  /// room or it is too large.
   absl::StatusOr<Written> write(const std::string& simulation, const std::string& checkpoint,
                                 const CheckpointContent& content) const;
-  /// DATA_LOSS unless the file is the one that was written: its hash, its simulation.
+  /// Reads a checkpoint. DATA_LOSS unless the file is the one that was written: its hash, its
+  /// simulation.
   absl::StatusOr<CheckpointContent> read(const std::string& simulation, const std::string& checkpoint,
                                          const std::string& sha256) const;
   void remove(const std::string& simulation, const std::string& checkpoint) const {

@@ -1,4 +1,4 @@
-// How a checkpoint is laid out in its file.
+// The layout of a checkpoint in its file.
 
 #include <array>
 #include <cstring>

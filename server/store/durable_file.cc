@@ -29,7 +29,7 @@ class OpenFile {
   int descriptor_;
 };
 
-/// 0 or the error number.
+/// Returns 0 or the error number.
 int write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t n = ::write(descriptor, bytes.data(), bytes.size());

@@ -9,10 +9,12 @@
 
 namespace lipofill::server {
 
-/// Whether an error number says that there is no room: a full disk, a quota, a limit on the size of files.
+/// True for error numbers that say that there is no room: a full disk, a quota, a limit on the size
+/// of files.
 bool is_out_of_space(int error_number);
 
-/// RESOURCE_EXHAUSTED when there is no room, else UNAVAILABLE: what could not be done, and why.
+/// Makes the error of a file: RESOURCE_EXHAUSTED when there is no room, else UNAVAILABLE; it says
+/// what could not be done, and why.
 absl::Status file_error(const std::string& what, int error_number);
 
 /// Writes a file whole or not at all, also when the machine dies: beside its place, to the medium, then into its place.

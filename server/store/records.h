@@ -8,8 +8,9 @@
 
 namespace lipofill::server {
 
-/// What the store keeps, as plain values. Fields called *_message hold serialised messages of the wire schema that the
-/// store does not look into. Times are microseconds since 1970.
+/// The records that the store keeps, as plain values. Fields called *_message hold serialised
+/// messages of the wire schema that the store does not look into. Times are microseconds since
+/// 1970.
 
 struct PatientRecord {
   std::string id;
@@ -101,7 +102,7 @@ struct CheckpointRecord {
   int64_t create_time_us = 0;
 };
 
-/// What a viewer of an ended simulation is shown.
+/// The data that a viewer of an ended simulation is shown.
 struct SimulationResult {
   std::string meshes_message;
   std::string frame_message;

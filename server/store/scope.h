@@ -6,11 +6,11 @@
 
 namespace lipofill::server {
 
-/// Whose everything is that was made without saying who one is.
+/// Tenant that owns everything made without saying who one is.
 inline constexpr char kLocalTenant[] = "local";
 
-/// What of all that the daemon keeps somebody may see: one tenant's, and of that perhaps only what belongs to certain
-/// patients.
+/// The part of the daemon's data that a caller may see: that of one tenant, and of that perhaps
+/// only what belongs to certain patients.
 struct Scope {
   std::string tenant = kLocalTenant;
   std::optional<std::set<std::string>> patients = {};  ///< ids; absent: all of the tenant's
@@ -20,7 +20,7 @@ struct Scope {
   }
 };
 
-/// Whose something is.
+/// The owner of a resource.
 struct Owner {
   std::string tenant;
   std::string patient;  ///< id

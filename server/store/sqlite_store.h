@@ -16,7 +16,8 @@ namespace lipofill::server {
 /// connection, its users take turns; calls last some ten microseconds.
 class SqliteStore : public Store {
  public:
-  /// DATA_LOSS for a file that is no database, FAILED_PRECONDITION for one of another program or of a newer schema.
+  /// Opens the store. DATA_LOSS for a file that is no database, FAILED_PRECONDITION for one of
+  /// another program or of a newer schema.
   static absl::StatusOr<std::unique_ptr<SqliteStore>> open(const std::string& path);
 
   absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) override;
@@ -81,7 +82,7 @@ class SqliteStore : public Store {
  private:
   explicit SqliteStore(std::unique_ptr<Database> database) : database_(std::move(database)) {}
 
-  /// Does what is to be done whole or not at all: nothing it wrote stays when it is not OK.
+  /// Does work whole or not at all: nothing it wrote stays when it is not OK.
   using Work = std::function<absl::Status()>;
   absl::Status transact(const Work& work);
   /// The same for what a request makes, or changes, once: `name` is remembered with it. The name that an equal request
@@ -102,7 +103,7 @@ class SqliteStore : public Store {
   absl::Status write_patient(const PatientRecord& patient);
   absl::Status write_scan(const ScanRecord& scan);
   absl::Status write_model(const ModelRecord& model);
-  /// OK unless it has scans or models.
+  /// Returns OK unless it has scans or models.
   absl::Status check_empty(const std::string& patient);
   absl::Status write_simulation(const SimulationRecord& simulation);
   absl::Status write_command(const CommandRecord& command);
@@ -111,7 +112,8 @@ class SqliteStore : public Store {
   absl::Status write_state(const std::string& simulation, SimulationState state, const std::string& spec_message);
   absl::Status write_rows(const std::string& simulation, const SeriesChunk& rows);
   absl::Status erase_rows(const std::string& simulation, uint64_t last_step);
-  /// OK unless a simulation that has not ended runs on a model in [first, last): FAILED_PRECONDITION naming it.
+  /// Returns OK unless a simulation that has not ended runs on a model in [first, last):
+  /// FAILED_PRECONDITION naming it.
   absl::Status check_unused(const std::string& first_model, const std::string& last_model);
   absl::Status write_labels(const PatientRecord& patient);
   absl::StatusOr<std::optional<std::string>> read_request(const RequestKey& request);

@@ -24,14 +24,14 @@ class Store {
   /// Creates return the record now in the store: the one given, or the one an equal request made before.
   virtual absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) = 0;
   virtual absl::StatusOr<PatientRecord> get_patient(const std::string& id) = 0;
-  /// Of what the scope has.
+  /// Lists the patients within the scope.
   virtual absl::StatusOr<std::vector<PatientRecord>> list_patients(const Scope& scope, const Page& page) = 0;
   /// Replaces display name and labels by what `change` makes of the present record; nobody comes between. What `change`
   /// refuses is not done.
   using PatientChange = std::function<absl::StatusOr<PatientRecord>(const PatientRecord& present)>;
   virtual absl::StatusOr<PatientRecord> update_patient(const std::string& id, const PatientChange& change) = 0;
-  /// Without `force` FAILED_PRECONDITION while it has scans or models; with it they go too. `check`, if any, may
-  /// refuse.
+  /// Deletes a patient. FAILED_PRECONDITION while it has scans or models, unless `force` is given;
+  /// then they go too. `check`, if any, may refuse.
   using PatientCheck = std::function<absl::Status(const PatientRecord& present)>;
   virtual absl::Status delete_patient(const std::string& id, bool force, const PatientCheck& check = nullptr) = 0;
 
@@ -41,33 +41,35 @@ class Store {
   virtual absl::Status set_scan_received(const std::string& patient, const std::string& id, uint64_t bytes) = 0;
   virtual absl::Status complete_scan(const std::string& patient, const std::string& id,
                                      const std::string& report_message) = 0;
-  /// FAILED_PRECONDITION while a model was built from it.
+  /// Deletes a scan. FAILED_PRECONDITION while a model was built from it.
   virtual absl::Status delete_scan(const std::string& patient, const std::string& id) = 0;
 
   virtual absl::StatusOr<ModelRecord> create_model(const ModelRecord& model, const RequestKey& request) = 0;
   virtual absl::StatusOr<ModelRecord> get_model(const std::string& patient, const std::string& id) = 0;
   virtual absl::StatusOr<std::vector<ModelRecord>> list_models(const std::string& patient, const Page& page) = 0;
-  /// FAILED_PRECONDITION while a simulation that has not ended runs on it; so does deleting its patient.
+  /// Deletes a model. FAILED_PRECONDITION while a simulation that has not ended runs on it; so does
+  /// deleting its patient.
   virtual absl::Status delete_model(const std::string& patient, const std::string& id) = 0;
 
   virtual absl::StatusOr<SimulationRecord> create_simulation(const SimulationRecord& simulation,
                                                              const RequestKey& request) = 0;
   virtual absl::StatusOr<SimulationRecord> get_simulation(const std::string& id) = 0;
   virtual absl::StatusOr<std::vector<SimulationRecord>> list_simulations(const Scope& scope, const Page& page) = 0;
-  /// State, reason, summary and result in one go; automatic checkpoints go.
+  /// Keeps state, reason, summary and result in one go; automatic checkpoints go.
   virtual absl::Status end_simulation(const SimulationRecord& ended, const SimulationResult& result) = 0;
-  /// State and reason alone, without a result.
+  /// Keeps state and reason alone, without a result.
   virtual absl::Status set_simulation_state(const std::string& id, SimulationState state,
                                             const std::string& reason) = 0;
-  /// Figures of one that has not ended, which is at rest; empty: none, it is in memory again.
+  /// Keeps the figures of a simulation that has not ended and is at rest; empty when it is in
+  /// memory again.
   virtual absl::Status keep_summary(const std::string& id, const std::string& summary_message) = 0;
   virtual absl::Status append_series(const std::string& id, const SeriesChunk& chunk) = 0;
   /// The chunk that holds the first step after `after_step`; none when there is no later one.
   virtual absl::StatusOr<std::optional<SeriesChunk>> next_series_chunk(const std::string& id, uint64_t after_step) = 0;
-  /// FAILED_PRECONDITION when it ended without one.
+  /// Returns the result. FAILED_PRECONDITION when it ended without one.
   virtual absl::StatusOr<SimulationResult> get_result(const std::string& id) = 0;
   virtual absl::Status delete_simulation(const std::string& id) = 0;
-  /// Those that have not ended, in order of their ids.
+  /// Lists the simulations that have not ended, in order of their ids.
   virtual absl::StatusOr<std::vector<SimulationRecord>> list_unended_simulations() = 0;
   /// A number for a new stream of frames: `now_us`, or more, so that it is larger than any before.
   virtual absl::StatusOr<uint64_t> begin_epoch(const std::string& id, int64_t now_us) = 0;
@@ -87,7 +89,8 @@ class Store {
   virtual absl::StatusOr<CheckpointRecord> get_checkpoint(const std::string& simulation, const std::string& id) = 0;
   virtual absl::StatusOr<std::vector<CheckpointRecord>> list_checkpoints(const std::string& simulation,
                                                                          const Page& page) = 0;
-  /// FAILED_PRECONDITION for the one that a simulation which has not ended began from.
+  /// Deletes a checkpoint. FAILED_PRECONDITION for the one that a simulation which has not ended
+  /// began from.
   virtual absl::Status delete_checkpoint(const std::string& simulation, const std::string& id) = 0;
   /// Deletes automatic checkpoints except the newest `keep` on course.
   virtual absl::Status prune_checkpoints(const std::string& simulation, int keep) = 0;
@@ -105,7 +108,8 @@ class Store {
   /// Forgets rows of the series after a step.
   virtual absl::Status cut_series(const std::string& id, uint64_t last_step) = 0;
 
-  /// Whose something is; of a simulation the patient of its model, which may have been deleted since.
+  /// The owner of a resource; for a simulation the patient of its model, which may have been
+  /// deleted since.
   virtual absl::StatusOr<Owner> owner_of_patient(const std::string& id) = 0;
   virtual absl::StatusOr<Owner> owner_of_simulation(const std::string& id) = 0;
 

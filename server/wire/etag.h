@@ -7,13 +7,13 @@
 
 namespace lipofill::server {
 
-/// Of the content: display name and labels.
+/// Etag of the content: display name and labels.
 std::string make_etag(const PatientRecord& patient);
-/// Of the commands taken so far and the state.
+/// Etag of the state and of the commands taken so far.
 std::string make_etag(const SimulationRecord& simulation);
 
-/// OK when nothing is given or it is the present one, else ABORTED with a violation of `field`: somebody else was
-/// first.
+/// Checks an etag. OK when nothing is given or it is the present one, else ABORTED with a violation
+/// of `field`: somebody else was first.
 absl::Status check_etag(const std::string& given, const std::string& present, const std::string& field);
 
 }  // namespace lipofill::server

@@ -10,15 +10,16 @@
 
 namespace lipofill::server {
 
-/// INVALID_ARGUMENT with a violation of `field` for every path of the mask that is no field of the message type. An
-/// empty mask is good, so is the one path "*": both mean everything. Checked by tests/unit/server/field_mask_test.cc.
+/// Checks a mask. INVALID_ARGUMENT with a violation of `field` for every path that is no field of
+/// the message type. An empty mask is good, so is the one path "*": both mean everything. Checked
+/// by tests/unit/server/field_mask_test.cc.
 absl::Status check_field_mask(const google::protobuf::FieldMask& mask, const google::protobuf::Descriptor& type,
                               const std::string& field);
 
 /// Leaves of a message only what a mask that was checked names.
 void keep_masked(const google::protobuf::FieldMask& mask, google::protobuf::Message& message);
 
-/// Whether a mask that was checked names a field of the message itself.
+/// True when a mask that was checked names a field of the message itself.
 bool is_masked(const google::protobuf::FieldMask& mask, const std::string& path);
 
 /// Carries out a call with a read mask: checks it, does `read`, which fills the response, and leaves what is wanted of

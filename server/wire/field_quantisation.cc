@@ -12,7 +12,7 @@ namespace lipofill::server {
 namespace {
 
 constexpr double kMostCode = 65535.0;
-/// Of a rounding to float32, relative; and what the arithmetic in double adds, generously.
+/// Relative error of rounding to float32, with a generous margin for the arithmetic in double.
 constexpr double kFloatRounding = std::numeric_limits<float>::epsilon() / 2.0 * (1.0 + 1e-6);
 
 std::vector<float> floats_of(const v1::ArraySlice& array) {

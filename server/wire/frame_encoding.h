@@ -36,7 +36,7 @@ std::vector<v1::MeshSlice> slice_meshes(const v1::MeshSlice& whole);
 EncodedMessages encode_meshes(const v1::MeshSlice& whole);
 /// Bodies of FrameSlices, without skipped_frames: that is the one thing in which viewers differ. See frame_header().
 EncodedMessages encode_frame(const v1::FrameSlice& whole);
-/// What goes before a body of encode_frame() to make it a serialised WatchResponse.
+/// Makes the header that turns a body of encode_frame() into a serialised WatchResponse.
 std::string frame_header(size_t body_size, uint64_t skipped_frames);
 
 /// The same from a session, each made once and shared by all viewers of the same selection.

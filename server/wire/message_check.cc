@@ -14,7 +14,7 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-/// Enough to mend an input by; a request of 4 MiB may hold a million.
+/// This many are enough to mend an input by; a request of 4 MiB may hold a million.
 constexpr size_t kMaxViolations = 20;
 
 class MessageChecker {

@@ -9,7 +9,8 @@
 
 namespace lipofill::server {
 
-/// For the idempotency of a create: a request_id stands for one request of a tenant, byte for byte, maps in order.
+/// Makes the key by which a create is idempotent: a request_id stands for one request of a tenant,
+/// byte for byte, maps in order.
 RequestKey make_request_key(const Principal& caller, const std::string& method, const std::string& request_id,
                             const google::protobuf::Message& request);
 

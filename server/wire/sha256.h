@@ -7,7 +7,7 @@
 
 namespace lipofill::server {
 
-/// Of the bytes alone, as sha256sum prints it.
+/// Hashes the bytes alone; sha256sum prints the same.
 inline std::string compute_sha256(std::string_view bytes) {
   Hasher hasher;
   hasher.add_bytes(bytes.data(), bytes.size());

@@ -16,7 +16,7 @@ std::optional<anatomy::TissueKind> kind_of(const v1::TissueLayer& layer);
 /// tests/unit/server/tissue_figures_test.cc.
 v1::ModelSpec fill_tissue_figures(v1::ModelSpec spec);
 
-/// What to say of a figure that a layer leaves out.
+/// Explains which figure a layer leaves out.
 std::string describe_missing_figure(const v1::ModelSpec& spec, const v1::TissueLayer& layer);
 
 }  // namespace lipofill::server

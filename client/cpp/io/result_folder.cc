@@ -11,7 +11,7 @@
 namespace lipofill::client {
 namespace {
 
-/// Only names of our own making: a folder may hold other things.
+/// True for names of our own making only: a folder may hold other things.
 bool is_frame_file(const std::string& name) {
   static const std::regex pattern(R"((skin|scan|tissue|film(_.+)?)(_\d{4,}\.vt[pu]|_preview\.vtp|\.pvd))");
   return std::regex_match(name, pattern);

@@ -15,7 +15,8 @@ class VtkMessages::Window : public vtkOutputWindow {
       void DisplayErrorText(const char* text) override {
     if (!error.empty()) return;
     error = text;
-    // "ERROR: In file.cxx, line 12\nvtkReader (0x...): what went wrong": the last part is for people.
+    // Takes the last part, which is for people, from "ERROR: In file.cxx, line 12\nvtkReader
+    // (0x...): what went wrong".
     const size_t what = error.find("): ");
     if (what != std::string::npos) error.erase(0, what + 3);
     while (!error.empty() && error.back() == '\n') error.pop_back();

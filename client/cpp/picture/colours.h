@@ -11,7 +11,7 @@ using Colour = std::array<double, 3>;
 
 inline constexpr Colour kSkin = {0.87, 0.70, 0.60};
 inline constexpr Colour kInk = {0.12, 0.12, 0.14};
-/// Of a surface where there is nothing to show.
+/// Colour of a surface where there is nothing to show.
 inline constexpr Colour kNothing = {0.93, 0.91, 0.89};
 
 /// A range of settled pressure and what it is called. The bounds are assumed: the first is the critical interstitial
@@ -22,18 +22,20 @@ struct PressureBand {
   Colour colour;
 };
 
-/// From harmless to harmful. Lightness falls from band to band, so that they are told apart without colour too.
+/// Bands of pressure from harmless to harmful. Lightness falls from band to band, so that they are
+/// told apart without colour too.
 extern const std::array<PressureBand, 4> kPressureBands;
 
 inline constexpr double kPascalPerMmhg = 133.322;
 
 const PressureBand& pressure_band_of(double pressure_pa);
 
-/// White where nothing moved, then through yellow and red to dark: lightness falls all the way, so it also reads
-/// without colour.
+/// Colours of movement: white where nothing moved, then through yellow and red to dark. Lightness
+/// falls all the way, so it also reads without colour.
 vtkSmartPointer<vtkColorTransferFunction> displacement_colours(double largest);
 
-/// Blue inside the target, white on it, red outside; skin where there is no value.
+/// Colours of distance: blue inside the target, white on it, red outside; skin where there is no
+/// value.
 vtkSmartPointer<vtkColorTransferFunction> distance_colours(double largest);
 
 }  // namespace lipofill::client

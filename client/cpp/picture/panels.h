@@ -23,7 +23,7 @@ struct Area {
   double top = 1.0;
 };
 
-/// How a surface is painted.
+/// The way a surface is painted.
 struct Paint {
   enum class Kind { kPlain, kPointField, kCellColours };
   Kind kind = Kind::kPlain;                     ///< in the colour of skin
@@ -34,7 +34,7 @@ struct Paint {
 /// A view of a surface in a part of the sheet. Precondition: the surface has point normals.
 vtkSmartPointer<vtkRenderer> panel(const Area& area, vtkPolyData* surface, const View& view, const Paint& paint);
 
-/// What is written and drawn over the panels.
+/// Text and lines drawn over the panels.
 class Overlay {
  public:
   Overlay();

@@ -22,7 +22,7 @@ inline constexpr char kThickness[] = "thickness_mm";
 /// field "displacement_mm" of three components or one of `fields`.
 absl::StatusOr<Surface> read_surface(const std::filesystem::path& file, const std::vector<std::string>& fields);
 
-/// With normals for smooth shading; points and their order stay.
+/// Adds normals for smooth shading; points and their order stay.
 Surface with_normals(vtkPolyData* surface);
 
 /// The surface as it was: its points less their displacement.

@@ -7,7 +7,7 @@
 
 namespace lipofill::client {
 
-/// What a project held.
+/// Content of a project.
 struct InvesaliusVolume {
   std::array<uint64_t, 3> size{};  ///< columns, rows, slices
   std::array<double, 3> spacing_mm{};

@@ -48,7 +48,7 @@ absl::Status set_geometry(const std::filesystem::path& file, const HeaderText& t
   return absl::OkStatus();
 }
 
-/// VTK's name for it, or 0.
+/// VTK's name for the type, or 0.
 int vtk_type_of(const std::string& type) {
   static const std::map<std::string, int> types = {{"MET_CHAR", VTK_SIGNED_CHAR}, {"MET_UCHAR", VTK_UNSIGNED_CHAR},
                                                    {"MET_SHORT", VTK_SHORT},      {"MET_USHORT", VTK_UNSIGNED_SHORT},
@@ -58,7 +58,7 @@ int vtk_type_of(const std::string& type) {
   return found == types.end() ? 0 : found->second;
 }
 
-/// What one scalar a voxel, in binary, on a grid of three axes takes.
+/// Sets the layout of the voxels, which must be binary, one scalar each, on a grid of three axes.
 absl::Status set_voxels(const std::filesystem::path& file, const HeaderText& text, VolumeHeader* header) {
   const std::string dimensions = text.value("ndims");
   if (!dimensions.empty() && dimensions != "3")

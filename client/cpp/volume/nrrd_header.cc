@@ -12,7 +12,7 @@
 namespace lipofill::client {
 namespace {
 
-/// VTK's name for it, or 0.
+/// VTK's name for the type, or 0.
 int vtk_type_of(const std::string& type) {
   static const std::map<std::string, int> types = {{"signed char", VTK_SIGNED_CHAR},
                                                    {"int8", VTK_SIGNED_CHAR},

@@ -55,8 +55,8 @@ Surface contour(const Volume& volume, double isovalue) {
   return contour->GetOutput();
 }
 
-/// From voxel indices to millimetres; triangles keep facing the lower values where the axes are left-handed or the
-/// slope is negative.
+/// Converts voxel indices to millimetres; triangles keep facing the lower values also when the axes
+/// are left-handed or the slope is negative.
 Surface to_millimetres(const Volume& volume, vtkPolyData* surface) {
   vtkNew<vtkMatrix4x4> matrix;
   matrix->DeepCopy(volume.index_to_mm.data());

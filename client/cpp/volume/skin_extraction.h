@@ -16,7 +16,7 @@ struct SkinExtraction {
   uint64_t target_triangles = 0;  ///< decimate down to about as many; 0: keep all
 };
 
-/// What came out.
+/// Result of the extraction.
 struct ExtractedSkin {
   uint64_t vertices = 0;
   uint64_t triangles = 0;

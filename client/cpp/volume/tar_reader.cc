@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint64_t kBlock = 512;
 
-/// An octal number, as tar writes sizes; none for anything else.
+/// Reads an octal number, as tar writes sizes; none for anything else.
 std::optional<uint64_t> parse_octal(const char* text, size_t size) {
   uint64_t value = 0;
   size_t i = 0;

@@ -14,7 +14,7 @@ enum class VolumeFormat { kMetaImage, kNrrd, kNifti };
 /// Row-major 4 x 4 affine map.
 using Affine = std::array<double, 16>;
 
-/// What the header of a volume file says, checked against the file before any voxel is read.
+/// The header of a volume file, checked against the file before any voxel is read.
 struct VolumeHeader {
   VolumeFormat format = VolumeFormat::kMetaImage;
   std::array<uint64_t, 3> size{};

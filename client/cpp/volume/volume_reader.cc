@@ -21,9 +21,9 @@
 namespace lipofill::client {
 namespace {
 
-/// Of MetaImage and NRRD, one value a voxel, as many as the file has been found to hold. Without VTK's readers, which
-/// have their own ideas of a header: on damaged ones that of NRRD does not come to an end, or writes beyond its memory,
-/// and that of MetaImage loses some.
+/// Reads voxels of MetaImage and NRRD, one value a voxel, as many as the file has been found to
+/// hold. VTK's readers are not used, as they have their own ideas of a header: on damaged ones that
+/// of NRRD does not come to an end, or writes beyond its memory, and that of MetaImage loses some.
 absl::Status take_voxels(const std::filesystem::path& file, Volume* volume) {
   const VolumeHeader& header = volume->header;
   const uint64_t bytes = header.voxel_bytes();

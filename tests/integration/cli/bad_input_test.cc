@@ -19,7 +19,9 @@ class BadInputTest : public CliTest {
 
 TEST_F(BadInputTest, Usage) {
   expect_failure("lipofill", 2, "subcommand");
-  expect_failure("lipofill fly", 2, "");
+  expect_failure("lipofill fly", 2, "there is no command 'fly'; see lipofill --help");
+  expect_failure("lipofill plan chek", 2,
+                 "there is no command 'plan chek' (did you mean 'plan check'?); see lipofill plan --help");
   expect_failure("lipofill run plan.json", 2, "--out");
   expect_failure("lipofill run plan.json --out out --spawn --server a:1", 2, "excludes");
   expect_failure("lipofill run plan.json --out out --interval-ms -1 --spawn", 2, "--interval-ms");

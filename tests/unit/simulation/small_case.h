@@ -31,7 +31,7 @@ inline plan::SimulationSpec make_small_plan() {
   film.name = "film";
   film.below_layer = "skin";
   film.n_xi = film.n_eta = 6;
-  film.zones = {{"all", ChartBox{}}};
+  film.zones = {{"all", plan::ChartBox{}}};
   spec.films = {film};
   spec.injections = {{"all", 0.3e-6, 1e-6, std::nullopt, geometry::ChartPoint{0.55, 0.45}}};
   spec.probes = {{"centre", "", geometry::ChartPoint{0.55, 0.45}}};

@@ -218,7 +218,7 @@ absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmS
   layout.grid.leaky_walls = find_leaky_walls(model.geometry.grid, layout.grid, *walls);
   layout.wall = spec.wall;
   layout.wall_stiffness = spec.wall_stiffness;
-  layout.wall_friction = spec.wall_friction == WallFriction::kNoSlip;
+  layout.wall_friction = spec.wall_friction;
   layout.rest_thickness = spec.rest_thickness;
   layout.connective_tissue = spec.connective_tissue;
   layout.initial_thickness = spec.initial_thickness.value_or(spec.rest_thickness);

@@ -48,7 +48,7 @@ void check_friction(const SimulationSpec& spec, FieldViolations& violations) {
   const bool newtonian = spec.fat_flow_index == 1.0 && spec.fat_yield_stress == 0.0;
   if (newtonian && !spec.fat_shear_modulus.has_value()) return;
   for (size_t f = 0; f < spec.films.size(); ++f) {
-    if (spec.films[f].wall_friction == WallFriction::kNoSlip) continue;
+    if (spec.films[f].wall_friction == film::WallFriction::kNoSlip) continue;
     violations.add(absl::StrCat("films[", f, "].wall_friction"),
                    "is NONE, which is for Newtonian fat: flow index 1, no yield stress, no shear modulus");
   }

@@ -112,7 +112,7 @@ plan::FilmSpec read_film(const v1::Film& message, const FieldReader& reader) {
         read_scalar_field(message.initial_thickness_mm(), kMetrePerMillimetre, reader.below("initial_thickness_mm"));
   }
   const bool frictionless = message.wall_friction() == v1::NONE;
-  film.wall_friction = frictionless ? plan::WallFriction::kNone : plan::WallFriction::kNoSlip;
+  film.wall_friction = frictionless ? film::WallFriction::kNone : film::WallFriction::kNoSlip;
   read_wall(message.wall(), reader.below("wall"), film);
   for (int i = 0; i < message.walls_size(); ++i) {
     film.walls.push_back(read_wall_in_film(message.walls(i), reader.below("walls", i)));

@@ -9,12 +9,12 @@
 #include "absl/strings/str_join.h"
 #include "core/anatomy/sided_names.h"
 #include "core/base/field_violations.h"
+#include "core/base/units.h"
 #include "core/geometry/skin_projection.h"
 
 namespace lipofill::anatomy {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr double kFarthestFromSkin = 0.020;  // [m]
 
 /// Weights of landmarks without their side.
@@ -46,9 +46,19 @@ const std::vector<LigamentRow>& rows() {
   static const std::vector<LigamentRow> table = {
       {"zygomatic", kZygomatic, std::nullopt, kZygoma, kZygoma, 1},
       {"masseteric_cutaneous", kMasseteric, std::nullopt, kMasseterTop, kMasseterBottom, 5},
-      {"mandibular_osteocutaneous", kMandibular, OnMandible{51.1 * kMillimetre, 9.1 * kMillimetre}, {}, {}, 1},
-      {"medial_mandibular", kMandibular, OnMandible{28.5 * kMillimetre, 8.4 * kMillimetre}, {}, {}, 1},
-      {"mental", kMandibular, OnMandible{9.1 * kMillimetre, 8.4 * kMillimetre}, {}, {}, 1},
+      {"mandibular_osteocutaneous",
+       kMandibular,
+       OnMandible{51.1 * kMetresPerMillimetre, 9.1 * kMetresPerMillimetre},
+       {},
+       {},
+       1},
+      {"medial_mandibular",
+       kMandibular,
+       OnMandible{28.5 * kMetresPerMillimetre, 8.4 * kMetresPerMillimetre},
+       {},
+       {},
+       1},
+      {"mental", kMandibular, OnMandible{9.1 * kMetresPerMillimetre, 8.4 * kMetresPerMillimetre}, {}, {}, 1},
   };
   return table;
 }

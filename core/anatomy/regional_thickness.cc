@@ -9,12 +9,12 @@
 #include "absl/strings/str_format.h"
 #include "core/anatomy/regions.h"
 #include "core/base/field_violations.h"
+#include "core/base/units.h"
 #include "core/geometry/surface_chart.h"
 
 namespace lipofill::anatomy {
 namespace {
 
-constexpr double kMillimetre = 1e-3;
 constexpr double kThinnest = 0.2e-3;  // [m]
 /// The blend ends at this multiple of a region's half-axes.
 constexpr double kReach = 1.5;
@@ -27,11 +27,11 @@ struct RegionalFigure {
 };
 
 constexpr std::array<RegionalFigure, 5> kFigures = {{
-    {TissueKind::kSkin, "masseter", 1.8 * kMillimetre, false},
-    {TissueKind::kSkin, "buccal", 1.8 * kMillimetre, false},
-    {TissueKind::kSubcutaneous, "masseter", 4.25 * kMillimetre, true},
-    {TissueKind::kSubcutaneous, "buccal", 4.82 * kMillimetre, true},
-    {TissueKind::kMuscle, "masseter", 10.0 * kMillimetre, false},
+    {TissueKind::kSkin, "masseter", 1.8 * kMetresPerMillimetre, false},
+    {TissueKind::kSkin, "buccal", 1.8 * kMetresPerMillimetre, false},
+    {TissueKind::kSubcutaneous, "masseter", 4.25 * kMetresPerMillimetre, true},
+    {TissueKind::kSubcutaneous, "buccal", 4.82 * kMetresPerMillimetre, true},
+    {TissueKind::kMuscle, "masseter", 10.0 * kMetresPerMillimetre, false},
 }};
 
 struct PlacedFigure {

@@ -7,6 +7,7 @@
 #include "absl/strings/str_join.h"
 #include "core/anatomy/sided_names.h"
 #include "core/base/field_violations.h"
+#include "core/base/units.h"
 #include "core/geometry/skin_projection.h"
 
 namespace lipofill::anatomy {
@@ -38,8 +39,6 @@ const std::vector<RegionRow>& rows() {
   return table;
 }
 
-constexpr double kMillimetre = 1e-3;
-
 }  // namespace
 
 std::vector<std::string> region_names() {
@@ -55,13 +54,13 @@ absl::StatusOr<Region> find_region(std::string_view name) {
       if (stem != row.name) continue;
       Region region;
       for (const auto& [landmark, weight] : row.weights) region.centre.weights[with_side(landmark, side)] = weight;
-      region.centre.left = (side == "left" ? row.outward_mm : -row.outward_mm) * kMillimetre;
-      region.centre.up = row.up_mm * kMillimetre;
-      region.centre.forward = row.forward_mm * kMillimetre;
+      region.centre.left = (side == "left" ? row.outward_mm : -row.outward_mm) * kMetresPerMillimetre;
+      region.centre.up = row.up_mm * kMetresPerMillimetre;
+      region.centre.forward = row.forward_mm * kMetresPerMillimetre;
       region.axis_from = with_side(row.axis_from, side);
       region.axis_to = with_side(row.axis_to, side);
-      region.half_length = row.half_length_mm * kMillimetre;
-      region.half_width = row.half_width_mm * kMillimetre;
+      region.half_length = row.half_length_mm * kMetresPerMillimetre;
+      region.half_width = row.half_width_mm * kMetresPerMillimetre;
       return region;
     }
   }

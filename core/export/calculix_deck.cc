@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "core/base/units.h"
 #include "core/export/wall_pressure.h"
 #include "core/mechanics/tissue_setup.h"
 #include "core/plan/film_layout.h"
@@ -16,10 +17,6 @@
 namespace lipofill::exporting {
 namespace {
 
-constexpr double kMillimetrePerMetre = 1e3;
-constexpr double kMegapascalPerPascal = 1e-6;
-constexpr double kTonnePerMm3 = 1e-12;  ///< of a kg/m3
-constexpr double kNewtonPerMm = 1e-3;   ///< of a N/m
 constexpr size_t kNumbersALine = 10;
 constexpr std::array<const char*, 3> kAxis = {"X", "Y", "Z"};
 
@@ -141,7 +138,7 @@ void CalculixDeck::Content::add_node_set(const std::string& name, std::vector<in
 
 void CalculixDeck::Content::add_nodes() {
   const auto line = [this](size_t n) {
-    const Eigen::Vector3d x = kMillimetrePerMetre * held.split.mesh.rest_positions.col(static_cast<Eigen::Index>(n));
+    const Eigen::Vector3d x = kMillimetresPerMetre * held.split.mesh.rest_positions.col(static_cast<Eigen::Index>(n));
     return absl::StrCat(n + 1, ", ", number(x[0]), ", ", number(x[1]), ", ", number(x[2]), "\n");
   };
   sections.push_back({"*NODE, NSET=ALL\n", static_cast<size_t>(held.split.mesh.n_nodes()), line});
@@ -166,8 +163,9 @@ void CalculixDeck::Content::add_materials() {
   for (size_t layer = 0; layer < layers.size(); ++layer) {
     const std::string name = layer_set(layer);
     const solid::ElasticMaterial& material = layers[layer].material;
-    add(absl::StrCat("*MATERIAL, NAME=", name, "\n*ELASTIC\n", number(material.youngs_modulus * kMegapascalPerPascal),
-                     ", ", number(material.poisson_ratio), "\n*DENSITY\n", number(material.density * kTonnePerMm3),
+    add(absl::StrCat("*MATERIAL, NAME=", name, "\n*ELASTIC\n", number(material.youngs_modulus * kMegapascalsPerPascal),
+                     ", ", number(material.poisson_ratio), "\n*DENSITY\n",
+                     number(material.density * kTonnesPerCubicMillimetrePerKilogramPerCubicMetre),
                      "\n*SOLID SECTION, ELSET=", name, ", MATERIAL=", name, "\n"));
   }
 }
@@ -218,7 +216,8 @@ void CalculixDeck::Content::add_springs() {
                           [free = std::move(free), element](size_t k) {
                             return absl::StrCat(element + k + 1, ", ", free[k] + 1, "\n");
                           }});
-      add(absl::StrCat("*SPRING, ELSET=", set, "\n", c + 1, "\n", number(stiffness * kNewtonPerMm), "\n"));
+      add(absl::StrCat("*SPRING, ELSET=", set, "\n", c + 1, "\n",
+                       number(stiffness * kNewtonsPerMillimetrePerNewtonPerMetre), "\n"));
       element += n_free;
     }
   }
@@ -236,7 +235,7 @@ void CalculixDeck::Content::add_loads() {
       if (wall->empty()) continue;
       const auto line = [wall](size_t k) {
         const LoadedFace& face = (*wall)[k];
-        return absl::StrCat(face.element, ", P", face.face, ", ", number(face.pressure * kMegapascalPerPascal), "\n");
+        return absl::StrCat(face.element, ", P", face.face, ", ", number(face.pressure * kMegapascalsPerPascal), "\n");
       };
       sections.push_back({absl::StrCat("** ", film.name, "\n*DLOAD\n"), wall->size(), line});
     }
@@ -245,7 +244,7 @@ void CalculixDeck::Content::add_loads() {
   std::string cards = "*DLOAD\n";
   const Eigen::Vector3d direction = gravity.normalized();
   for (size_t layer = 0; layer < layers.size(); ++layer) {
-    absl::StrAppend(&cards, layer_set(layer), ", GRAV, ", number(gravity.norm() * kMillimetrePerMetre), ", ",
+    absl::StrAppend(&cards, layer_set(layer), ", GRAV, ", number(gravity.norm() * kMillimetresPerMetre), ", ",
                     number(direction[0]), ", ", number(direction[1]), ", ", number(direction[2]), "\n");
   }
   add(std::move(cards));

@@ -4,14 +4,17 @@
 
 namespace lipofill::film {
 
+/// Of a film's walls: none is the paper's own model, for Newtonian fat only.
+enum class WallFriction { kNoSlip, kNone };
+
 /// Injected fat between two walls: a Herschel-Bulkley fluid, tau = tau_y + K rate^n (Newtonian by default), in series
 /// with an elastic modulus (Maxwell) when that is finite.
 struct Fat {
-  double viscosity = 15.0;    ///< mu [Pa s], or the consistency K [Pa s^n]
-  double density = 920.0;     ///< rho [kg/m3]
-  bool wall_friction = true;  ///< no-slip walls; false: the paper's own model, Newtonian only
-  double flow_index = 1.0;    ///< n, in (0, 1]
-  double yield_stress = 0.0;  ///< tau_y [Pa]
+  double viscosity = 15.0;  ///< mu [Pa s], or the consistency K [Pa s^n]
+  double density = 920.0;   ///< rho [kg/m3]
+  WallFriction wall_friction = WallFriction::kNoSlip;
+  double flow_index = 1.0;                                         ///< n, in (0, 1]
+  double yield_stress = 0.0;                                       ///< tau_y [Pa]
   double shear_modulus = std::numeric_limits<double>::infinity();  ///< G of the Maxwell element [Pa]
 
   bool is_newtonian() const { return flow_index == 1.0 && yield_stress == 0.0; }

@@ -3,13 +3,13 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <optional>
+
+#include "core/base/units.h"
 
 namespace lipofill::geometry {
 namespace {
 
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr double kShortestUsefulLength = 1e-3;  // [m]
 
 std::optional<Eigen::Vector3d> sum_of_left_minus_right(const Landmarks& landmarks) {

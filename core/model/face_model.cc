@@ -7,31 +7,29 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
 #include "core/base/hash.h"
+#include "core/base/units.h"
 #include "core/model/face_model_check.h"
 #include "core/model/layer_thickness.h"
 
 namespace lipofill::model {
 namespace {
 
-constexpr double kPascalPerKilopascal = 1e3;
-/// Pa/m in one kPa/mm.
-constexpr double kStiffnessUnit = 1e6;
 /// Share of the building work that comes before the layers.
 constexpr double kSkinFraction = 0.9;
 
 void check_layer(const TissueLayerSpec& layer, const std::string& field, FieldViolations& violations) {
   violations.check_range(absl::StrCat(field, ".youngs_modulus_kpa"),
-                         layer.material.youngs_modulus / kPascalPerKilopascal, 0.01, 1e6, "kPa");
+                         layer.material.youngs_modulus / kPascalsPerKilopascal, 0.01, 1e6, "kPa");
   violations.check_half_open(absl::StrCat(field, ".poisson_ratio"), layer.material.poisson_ratio, 0.0, 0.5, "");
   violations.check_range(absl::StrCat(field, ".density_kg_m3"), layer.material.density, 1.0, 30000.0, "kg/m3");
-  violations.check_range(absl::StrCat(field, ".prestress_kpa"), layer.material.prestress / kPascalPerKilopascal, 0.0,
+  violations.check_range(absl::StrCat(field, ".prestress_kpa"), layer.material.prestress / kPascalsPerKilopascal, 0.0,
                          1000.0, "kPa");
 }
 
 void check_support(const Support& support, const char* field, bool is_square, FieldViolations& violations) {
   if (support.kind == SupportKind::kElastic) {
-    violations.check_range(absl::StrCat(field, ".stiffness_kpa_per_mm"), support.stiffness / kStiffnessUnit, 1e-9, 1e9,
-                           "kPa/mm");
+    violations.check_range(absl::StrCat(field, ".stiffness_kpa_per_mm"),
+                           support.stiffness / kPascalsPerMetrePerKilopascalPerMillimetre, 1e-9, 1e9, "kPa/mm");
   }
   if (support.kind == SupportKind::kRollers && !is_square) {
     violations.add(absl::StrCat(field, ".kind"), "is ROLLERS, which needs a square: a scan's sides are not planes");

@@ -9,13 +9,12 @@
 #include "absl/strings/str_cat.h"
 #include "core/anatomy/regions.h"
 #include "core/base/field_violations.h"
+#include "core/base/units.h"
 #include "core/plan/film_walls.h"
 
 namespace lipofill::plan {
 namespace {
 
-constexpr double kMetrePerMillimetre = 1e-3;
-constexpr double kStiffnessUnit = 1e6;  ///< Pa/m in a kPa/mm
 constexpr int kMaxFilmCells = 65536;
 constexpr double kCoarsestRatio = 2.0;
 constexpr double kThickest_mm = 50.0;
@@ -36,8 +35,8 @@ void check_thickness(const geometry::ScalarField& field, const std::string& name
   const absl::Status status = field.validate();
   violations.absorb(name, status);
   if (!status.ok()) return;
-  violations.check_range(name, field.minimum() / kMetrePerMillimetre, lowest, kThickest_mm, "mm");
-  violations.check_range(name, field.maximum() / kMetrePerMillimetre, lowest, kThickest_mm, "mm");
+  violations.check_range(name, field.minimum() / kMetresPerMillimetre, lowest, kThickest_mm, "mm");
+  violations.check_range(name, field.maximum() / kMetresPerMillimetre, lowest, kThickest_mm, "mm");
 }
 
 void check_grid_counts(const FilmSpec& spec, FieldViolations& violations) {
@@ -51,8 +50,8 @@ void check_grid_counts(const FilmSpec& spec, FieldViolations& violations) {
 
 void check_connective_tissue(const FilmSpec& spec, FieldViolations& violations) {
   const ConnectiveTissueSpec& fibres = spec.connective_tissue;
-  violations.check_range("connective_tissue.stiffness_kpa_per_mm", fibres.stiffness / kStiffnessUnit, 0.0, 1e6,
-                         "kPa/mm");
+  violations.check_range("connective_tissue.stiffness_kpa_per_mm",
+                         fibres.stiffness / kPascalsPerMetrePerKilopascalPerMillimetre, 0.0, 1e6, "kPa/mm");
   violations.check_range("connective_tissue.entry_pressure_pa", fibres.entry_pressure, 0.0, 1e7, "Pa");
   if (fibres.stiffness > 0.0 && spec.wall != FilmWallKind::kTissue) {
     violations.add("connective_tissue.stiffness_kpa_per_mm", "is given, but only films on tissue have fibres");
@@ -99,7 +98,7 @@ absl::StatusOr<Membership> make_membership(const model::FaceModel& model, const 
   }
   if (const auto* disc = std::get_if<Disc>(&zone.shape)) {
     FieldViolations violations;
-    violations.check_range("disc.radius_mm", disc->radius / kMetrePerMillimetre, 0.1, 500.0, "mm");
+    violations.check_range("disc.radius_mm", disc->radius / kMetresPerMillimetre, 0.1, 500.0, "mm");
     const auto centre = geometry::locate_in_chart(face, disc->centre);
     violations.absorb("disc.centre", centre.status());
     if (!violations.empty()) return violations.to_status();
@@ -190,7 +189,8 @@ absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmS
     check_thickness(*spec.initial_thickness, "initial_thickness_mm", 0.0, violations);
   if (spec.zones.empty()) violations.add("zones", "there are none; at least 1 is needed");
   if (spec.wall == FilmWallKind::kWinkler) {
-    violations.check_range("wall.stiffness_kpa_per_mm", spec.wall_stiffness / kStiffnessUnit, 1e-9, 1e9, "kPa/mm");
+    violations.check_range("wall.stiffness_kpa_per_mm",
+                           spec.wall_stiffness / kPascalsPerMetrePerKilopascalPerMillimetre, 1e-9, 1e9, "kPa/mm");
   }
   check_connective_tissue(spec, violations);
   FilmLayout layout;
@@ -218,7 +218,7 @@ absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmS
   layout.grid.leaky_walls = find_leaky_walls(model.geometry.grid, layout.grid, *walls);
   layout.wall = spec.wall;
   layout.wall_stiffness = spec.wall_stiffness;
-  layout.wall_friction = spec.wall_friction == WallFriction::kNoSlip;
+  layout.wall_friction = spec.wall_friction;
   layout.rest_thickness = spec.rest_thickness;
   layout.connective_tissue = spec.connective_tissue;
   layout.initial_thickness = spec.initial_thickness.value_or(spec.rest_thickness);

@@ -18,7 +18,7 @@ struct FilmLayout {
   std::vector<std::string> zone_names;  ///< by index in FilmGrid::zone_of_cell
   FilmWallKind wall = FilmWallKind::kTissue;
   double wall_stiffness = 0.0;  ///< [Pa/m]
-  bool wall_friction = true;
+  film::WallFriction wall_friction = film::WallFriction::kNoSlip;
   int level = -1;  ///< of the tissue, kTissue only
   geometry::ScalarField rest_thickness;
   geometry::ScalarField initial_thickness;

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
+#include "core/base/units.h"
 #include "core/plan/film_layout.h"
 
 namespace lipofill::plan {
@@ -14,8 +15,6 @@ namespace {
 
 using geometry::ChartPoint;
 
-/// m2/(Pa s) in a mL/(s kPa cm).
-constexpr double kLeakageUnit = 1e-6 / (1e3 * 1e-2);
 constexpr size_t kMaxPathPoints = 256;
 
 double side_of(const ChartPoint& a, const ChartPoint& b, const ChartPoint& p) {

@@ -6,12 +6,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
+#include "core/base/units.h"
 #include "core/film/film_metric.h"
 
 namespace lipofill::plan {
 namespace {
 
-constexpr double kCubicMetrePerMillilitre = 1e-6;
 /// Largest mean thickness of the fat in a zone: no tissue plane of the face takes more [m].
 constexpr double kMaxMeanThickness = 20e-3;
 /// Share of a cell's content that one step may take out of it.
@@ -56,7 +56,7 @@ absl::Status InjectionSchedule::add(const model::FaceModel& model, const std::ve
   FieldViolations violations;
   const auto [film, zone] = find_zone(films, spec.zone);
   if (film < 0) violations.add("zone", absl::StrCat("is '", spec.zone, "', which no film has"));
-  violations.check_range("rate_ml_per_s", spec.rate / kCubicMetrePerMillilitre, 1e-6, 1000.0, "mL/s");
+  violations.check_range("rate_ml_per_s", spec.rate / kCubicMetresPerMillilitre, 1e-6, 1000.0, "mL/s");
   if (!std::isfinite(spec.volume)) violations.add("volume_ml", "is not a number");
   if (spec.start.has_value()) violations.check_range("start_s", *spec.start, now, 1e6, "s");
   if (!violations.empty()) return violations.to_status();
@@ -71,9 +71,9 @@ absl::Status InjectionSchedule::add(const model::FaceModel& model, const std::ve
   }
   const double most = zone_area * kMaxMeanThickness;
   if (std::abs(spec.volume) > most) {
-    violations.add("volume_ml",
-                   absl::StrCat("is ", spec.volume / kCubicMetrePerMillilitre, " mL, zone '", spec.zone, "' of ",
-                                zone_area * 1e4, " cm2 holds at most ", most / kCubicMetrePerMillilitre, " mL"));
+    violations.add("volume_ml", absl::StrCat("is ", spec.volume / kCubicMetresPerMillilitre, " mL, zone '", spec.zone,
+                                             "' of ", zone_area * kSquareCentimetresPerSquareMetre,
+                                             " cm2 holds at most ", most / kCubicMetresPerMillilitre, " mL"));
   }
   if (spec.site.has_value()) {
     const auto place = geometry::locate_in_chart(model.geometry, *spec.site);

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
+#include "core/base/units.h"
 
 namespace lipofill::plan {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 constexpr size_t kMaxFilms = 8;
 constexpr size_t kMaxInjections = 1000;
 constexpr size_t kMaxProbes = 64;
-constexpr double kSecondsPerMillisecond = 1e-3;
 
 void check_count(const char* field, size_t count, size_t most, FieldViolations& violations) {
   if (count > most) violations.add(field, absl::StrCat("are ", count, ", must be at most ", most));
@@ -38,9 +38,10 @@ void check_time(const SimulationSpec& spec, FieldViolations& violations) {
     violations.check_range("time.max_injection_step_ms", *spec.max_injection_step / kSecondsPerMillisecond,
                            spec.step / kSecondsPerMillisecond, 60000.0, "ms");
   }
-  violations.check_range("time.error_tolerance_mm", spec.error_tolerance * 1e3, 1e-9, 100.0, "mm");
+  violations.check_range("time.error_tolerance_mm", spec.error_tolerance * kMillimetresPerMetre, 1e-9, 100.0, "mm");
   violations.check_range("time.end_s", spec.end, 1e-6, 1e6, "s");
-  violations.check_range("time.settle_skin_speed_mm_per_s", spec.settle_skin_speed * 1e3, 0.0, 1000.0, "mm/s");
+  violations.check_range("time.settle_skin_speed_mm_per_s", spec.settle_skin_speed * kMillimetresPerMetre, 0.0, 1000.0,
+                         "mm/s");
 }
 
 /// Checks the friction: without any on the walls there is no shear across the film for a yield
@@ -49,7 +50,7 @@ void check_friction(const SimulationSpec& spec, FieldViolations& violations) {
   const bool newtonian = spec.fat_flow_index == 1.0 && spec.fat_yield_stress == 0.0;
   if (newtonian && !spec.fat_shear_modulus.has_value()) return;
   for (size_t f = 0; f < spec.films.size(); ++f) {
-    if (spec.films[f].wall_friction == WallFriction::kNoSlip) continue;
+    if (spec.films[f].wall_friction == film::WallFriction::kNoSlip) continue;
     violations.add(absl::StrCat("films[", f, "].wall_friction"),
                    "is NONE, which is for Newtonian fat: flow index 1, no yield stress, no shear modulus");
   }

@@ -7,13 +7,13 @@
 #include <variant>
 #include <vector>
 
+#include "core/film/rheology.h"
 #include "core/geometry/chart_box.h"
 #include "core/geometry/face_geometry.h"
 
 namespace lipofill::plan {
 
 enum class CouplingMode { kExact, kLumped };
-enum class WallFriction { kNoSlip, kNone };
 /// The purpose of a simulation: to be watched, or to find the final shape in as few steps as
 /// possible.
 enum class TimeGoal { kTransient, kSettledShape };
@@ -63,7 +63,7 @@ struct FilmSpec {
   std::vector<ZoneSpec> zones;
   geometry::ScalarField rest_thickness = geometry::ScalarField::constant(0.05e-3);  ///< [m]
   std::optional<geometry::ScalarField> initial_thickness;                           ///< [m]
-  WallFriction wall_friction = WallFriction::kNoSlip;
+  film::WallFriction wall_friction = film::WallFriction::kNoSlip;
   FilmWallKind wall = FilmWallKind::kTissue;
   double wall_stiffness = 0.0;  ///< [Pa/m], kWinkler only
   std::vector<WallSpec> walls;

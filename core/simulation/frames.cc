@@ -1,13 +1,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/units.h"
 #include "core/film/edge_operators.h"
 #include "core/simulation/simulation_impl.h"
 
 namespace lipofill::simulation {
 namespace {
-
-constexpr double kMillimetresPerMetre = 1e3;
 
 template <typename Array>
 std::vector<float> to_floats(const Array& numbers, double scale) {

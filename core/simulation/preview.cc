@@ -5,12 +5,11 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/units.h"
 #include "core/plan/coarse_plan.h"
 
 namespace lipofill::simulation {
 namespace {
-
-constexpr double kMetrePerMillimetre = 1e-3;
 
 /// Displacement of the skin in a frame [mm] (3 n).
 std::vector<float> find_skin_displacement(const std::vector<FrameField>& fields) {
@@ -56,11 +55,11 @@ PreviewDifference compare_preview(const std::vector<FrameField>& frame, const St
   for (size_t k = 0; k + 2 < std::min(foreseen.size(), found.size()); k += 3) {
     double square = 0.0;
     for (size_t c = k; c < k + 3; ++c) square += std::pow(static_cast<double>(foreseen[c]) - found[c], 2);
-    difference.max = std::max(difference.max, std::sqrt(square) * kMetrePerMillimetre);
+    difference.max = std::max(difference.max, std::sqrt(square) * kMetresPerMillimetre);
     squares += square;
   }
   if (!found.empty()) {
-    difference.rms = std::sqrt(squares / (static_cast<double>(found.size()) / 3.0)) * kMetrePerMillimetre;
+    difference.rms = std::sqrt(squares / (static_cast<double>(found.size()) / 3.0)) * kMetresPerMillimetre;
   }
   difference.volume = report.skin_volume_change - full.report().skin_volume_change;
   return difference;

@@ -37,8 +37,6 @@ class ElementAssembler {
   ElementTotals add(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force, std::vector<int>& squeezed,
                     NodeBlocks& blocks) const;
 
-  size_t n_bytes() const { return forces_.size() * (sizeof(ElementBatch) + sizeof(StiffnessBatch)); }
-
  private:
   using Lane = std::array<int, kLanes>;  ///< hexahedra of a batch, -1: left over
 

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/units.h"
 #include "core/geometry/surface_distance.h"
 #include "server/wire/report_conversion.h"
 
@@ -24,7 +25,7 @@ absl::StatusOr<std::vector<T>> find_array(const Arrays& arrays, const std::strin
 }
 
 Eigen::Vector3d vector_at(const std::vector<float>& values, size_t i) {
-  return 1e-3 * Eigen::Vector3d(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
+  return kMetresPerMillimetre * Eigen::Vector3d(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
 }
 
 /// Points of the patch, undisplaced and displaced, in the order of `vertices`.
@@ -112,7 +113,9 @@ absl::StatusOr<v1::Evaluation> evaluate(const SkinPatch& patch, const geometry::
   evaluation.set_hausdorff_mm(
       std::max(evaluation.simulated_to_target().max_mm(), evaluation.target_to_simulated().max_mm()));
   *evaluation.mutable_before_to_target() = to_distance_statistics(geometry::compute_distance_statistics(*before));
-  for (const double d : distance->patch_to_target) evaluation.add_distance_mm(static_cast<float>(1e3 * d));
+  for (const double d : distance->patch_to_target) {
+    evaluation.add_distance_mm(static_cast<float>(kMillimetresPerMetre * d));
+  }
   evaluation.mutable_vertices()->Add(patch.vertices.begin(), patch.vertices.end());
   evaluation.set_mesh(patch.mesh);
   return evaluation;

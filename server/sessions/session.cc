@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/units.h"
 #include "server/sessions/memory.h"
 #include "spdlog/spdlog.h"
 
@@ -174,7 +175,7 @@ Session::Clock::time_point Session::due_time() const {
 void Session::advance_one_step() {
   const Clock::time_point begin = Clock::now();
   simulation_->advance_step();
-  const double wall_ms = 1e3 * seconds(Clock::now() - begin);
+  const double wall_ms = kMillisecondsPerSecond * seconds(Clock::now() - begin);
   const Phase phase = simulation_->phase();
   if (phase != Phase::kFailed) record_step(wall_ms);
   if (phase != Phase::kRunning) return finish(state_of(phase), simulation_->reason());

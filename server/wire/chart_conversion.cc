@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/units.h"
 
 namespace lipofill::server {
 
@@ -55,15 +56,15 @@ geometry::SkinPoint read_skin_point(const v1::SkinPoint& message, const FieldRea
                                   chart.required(message.chart().has_eta(), message.chart().eta(), 1.0, "eta")};
     }
     case v1::SkinPoint::kPositionMm:
-      return read_vector(message.position_mm(), kMetrePerMillimetre, reader.below("position_mm"));
+      return read_vector(message.position_mm(), kMetresPerMillimetre, reader.below("position_mm"));
     case v1::SkinPoint::kLandmarks: {
       const v1::LandmarkPoint& landmarks = message.landmarks();
       geometry::LandmarkPoint point;
       point.weights = {landmarks.weights().begin(), landmarks.weights().end()};
       if (point.weights.empty()) reader.below("landmarks").missing("weights");
-      point.left = landmarks.left_mm() * kMetrePerMillimetre;
-      point.up = landmarks.up_mm() * kMetrePerMillimetre;
-      point.forward = landmarks.forward_mm() * kMetrePerMillimetre;
+      point.left = landmarks.left_mm() * kMetresPerMillimetre;
+      point.up = landmarks.up_mm() * kMetresPerMillimetre;
+      point.forward = landmarks.forward_mm() * kMetresPerMillimetre;
       return point;
     }
     case v1::SkinPoint::PLACE_NOT_SET:

@@ -42,8 +42,6 @@ class FieldReader {
   FieldViolations& violations_;
 };
 
-constexpr double kMetrePerMillimetre = 1e-3;
-
 Eigen::Vector3d read_vector(const v1::Vector3& message, double factor, const FieldReader& reader);
 geometry::ScalarField read_samples(const v1::FieldSamples& message, double factor, const FieldReader& reader);
 geometry::ScalarField read_scalar_field(const v1::ScalarField& message, double factor, const FieldReader& reader);

@@ -1,14 +1,12 @@
 #include "server/wire/model_conversion.h"
 
 #include "absl/strings/str_cat.h"
+#include "core/base/units.h"
 #include "server/wire/chart_conversion.h"
 #include "server/wire/tissue_figures.h"
 
 namespace lipofill::server {
 namespace {
-
-constexpr double kPascalPerKilopascal = 1e3;
-constexpr double kPascalPerMetrePerKilopascalPerMillimetre = 1e6;
 
 geometry::HeadAxes read_axes(const v1::HeadAxes& message, const FieldReader& reader) {
   return {read_vector(message.left(), 1.0, reader.below("left")), read_vector(message.up(), 1.0, reader.below("up")),
@@ -20,7 +18,7 @@ geometry::ScanRegionSpec read_scan_region(const v1::ScanRegion& message, const F
   if (message.scan().empty()) reader.missing("scan");
   for (const auto& [name, position] : message.landmarks_mm()) {
     const FieldReader landmark = reader.below(absl::StrCat("landmarks_mm[", name, "]"));
-    region.landmarks[name] = read_vector(position, kMetrePerMillimetre, landmark);
+    region.landmarks[name] = read_vector(position, kMetresPerMillimetre, landmark);
   }
   if (message.has_axes()) region.axes = read_axes(message.axes(), reader.below("axes"));
   if (message.corners_size() != 4) {
@@ -43,7 +41,7 @@ model::Support read_support(const v1::Support& message, const FieldReader& reade
     case v1::Support::ELASTIC:
       support.kind = model::SupportKind::kElastic;
       support.stiffness = reader.required(message.has_stiffness_kpa_per_mm(), message.stiffness_kpa_per_mm(),
-                                          kPascalPerMetrePerKilopascalPerMillimetre, "stiffness_kpa_per_mm");
+                                          kPascalsPerMetrePerKilopascalPerMillimetre, "stiffness_kpa_per_mm");
       break;
     default:
       support.kind = model::SupportKind::kClamped;
@@ -53,9 +51,9 @@ model::Support read_support(const v1::Support& message, const FieldReader& reade
 
 model::DownToBone read_down_to_bone(const v1::DownToBone& message) {
   model::DownToBone bounds;
-  if (message.has_min_thickness_mm()) bounds.min_thickness = message.min_thickness_mm() * kMetrePerMillimetre;
-  if (message.has_max_thickness_mm()) bounds.max_thickness = message.max_thickness_mm() * kMetrePerMillimetre;
-  if (message.has_smoothing_mm()) bounds.smoothing = message.smoothing_mm() * kMetrePerMillimetre;
+  if (message.has_min_thickness_mm()) bounds.min_thickness = message.min_thickness_mm() * kMetresPerMillimetre;
+  if (message.has_max_thickness_mm()) bounds.max_thickness = message.max_thickness_mm() * kMetresPerMillimetre;
+  if (message.has_smoothing_mm()) bounds.smoothing = message.smoothing_mm() * kMetresPerMillimetre;
   return bounds;
 }
 
@@ -68,7 +66,7 @@ void read_thickness(const v1::TissueLayer& message, const std::string& if_missin
       reader.wrong("thickness_mm", "is given, and so is down_to_bone: one of them at most");
   } else if (message.has_thickness_mm()) {
     layer.geometry.thickness =
-        read_scalar_field(message.thickness_mm(), kMetrePerMillimetre, reader.below("thickness_mm"));
+        read_scalar_field(message.thickness_mm(), kMetresPerMillimetre, reader.below("thickness_mm"));
   } else {
     reader.wrong("thickness_mm", if_missing);
   }
@@ -90,10 +88,10 @@ model::TissueLayerSpec read_layer(const v1::TissueLayer& message, const std::str
     return value * factor;
   };
   layer.material.youngs_modulus = figure(message.has_youngs_modulus_kpa(), message.youngs_modulus_kpa(),
-                                         kPascalPerKilopascal, "youngs_modulus_kpa");
+                                         kPascalsPerKilopascal, "youngs_modulus_kpa");
   layer.material.poisson_ratio = figure(message.has_poisson_ratio(), message.poisson_ratio(), 1.0, "poisson_ratio");
   layer.material.density = figure(message.has_density_kg_m3(), message.density_kg_m3(), 1.0, "density_kg_m3");
-  layer.material.prestress = message.prestress_kpa() * kPascalPerKilopascal;
+  layer.material.prestress = message.prestress_kpa() * kPascalsPerKilopascal;
   return layer;
 }
 
@@ -108,8 +106,8 @@ absl::StatusOr<model::FaceModelSpec> to_face_model_spec(const v1::ModelSpec& giv
     const v1::Square& square = message.square();
     const FieldReader below = reader.below("square");
     spec.region = geometry::SquareSpec{
-        below.required(square.has_length_xi_mm(), square.length_xi_mm(), kMetrePerMillimetre, "length_xi_mm"),
-        below.required(square.has_length_eta_mm(), square.length_eta_mm(), kMetrePerMillimetre, "length_eta_mm")};
+        below.required(square.has_length_xi_mm(), square.length_xi_mm(), kMetresPerMillimetre, "length_xi_mm"),
+        below.required(square.has_length_eta_mm(), square.length_eta_mm(), kMetresPerMillimetre, "length_eta_mm")};
   } else if (message.has_scan_region()) {
     spec.region = read_scan_region(message.scan_region(), reader.below("scan_region"));
   } else {

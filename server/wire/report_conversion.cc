@@ -3,13 +3,10 @@
 #include <Eigen/LU>
 #include <cmath>
 
+#include "core/base/units.h"
+
 namespace lipofill::server {
 namespace {
-
-constexpr double kMillimetrePerMetre = 1e3;
-constexpr double kMillilitrePerCubicMetre = 1e6;
-constexpr double kMillisecondPerSecond = 1e3;
-constexpr double kMillijoulePerJoule = 1e3;
 
 /// Volume of the hexahedra of a grid [m3]: det(J) at 2 x 2 x 2 Gauss points, exact for trilinear shapes.
 double compute_tissue_volume(const geometry::LayeredGrid& grid) {
@@ -42,9 +39,9 @@ void add_layers(const model::FaceModel& model, v1::ModelReport& report) {
   for (size_t l = 0; l < model.layers.size(); ++l) {
     v1::LayerReport& layer = *report.add_layers();
     layer.set_name(model.layers[l].name);
-    layer.set_min_thickness_mm(model.thickness[l].min * kMillimetrePerMetre);
-    layer.set_mean_thickness_mm(model.thickness[l].mean * kMillimetrePerMetre);
-    layer.set_max_thickness_mm(model.thickness[l].max * kMillimetrePerMetre);
+    layer.set_min_thickness_mm(model.thickness[l].min * kMillimetresPerMetre);
+    layer.set_mean_thickness_mm(model.thickness[l].mean * kMillimetresPerMetre);
+    layer.set_max_thickness_mm(model.thickness[l].max * kMillimetresPerMetre);
   }
 }
 
@@ -52,9 +49,9 @@ v1::BoneReport to_bone_report(const model::BoneFinding& bone) {
   v1::BoneReport report;
   report.set_measured_share(bone.measured_share);
   report.set_limited_share(bone.limited_share);
-  report.set_min_depth_mm(bone.depth.min * kMillimetrePerMetre);
-  report.set_mean_depth_mm(bone.depth.mean * kMillimetrePerMetre);
-  report.set_max_depth_mm(bone.depth.max * kMillimetrePerMetre);
+  report.set_min_depth_mm(bone.depth.min * kMillimetresPerMetre);
+  report.set_mean_depth_mm(bone.depth.mean * kMillimetresPerMetre);
+  report.set_max_depth_mm(bone.depth.max * kMillimetresPerMetre);
   return report;
 }
 
@@ -83,12 +80,12 @@ v1::PreviewSummary to_preview_summary(const PreviewView& view) {
   summary.set_time_s(view.report.time);
   summary.set_hexahedra(static_cast<uint32_t>(view.n_hexahedra));
   summary.set_film_cells(static_cast<uint32_t>(view.n_film_cells));
-  summary.set_skin_max_displacement_mm(view.report.skin_max_displacement * kMillimetrePerMetre);
-  summary.set_skin_volume_change_ml(view.report.skin_volume_change * kMillilitrePerCubicMetre);
+  summary.set_skin_max_displacement_mm(view.report.skin_max_displacement * kMillimetresPerMetre);
+  summary.set_skin_volume_change_ml(view.report.skin_volume_change * kMillilitresPerCubicMetre);
   if (!view.difference) return summary;
-  summary.set_difference_max_mm(view.difference->max * kMillimetrePerMetre);
-  summary.set_difference_rms_mm(view.difference->rms * kMillimetrePerMetre);
-  summary.set_difference_volume_ml(view.difference->volume * kMillilitrePerCubicMetre);
+  summary.set_difference_max_mm(view.difference->max * kMillimetresPerMetre);
+  summary.set_difference_rms_mm(view.difference->rms * kMillimetresPerMetre);
+  summary.set_difference_volume_ml(view.difference->volume * kMillilitresPerCubicMetre);
   return summary;
 }
 
@@ -101,10 +98,10 @@ v1::ModelReport to_model_report(const model::FaceModel& model) {
   report.set_hexahedra(static_cast<uint32_t>(face.grid.n_hexahedra()));
   report.set_nodes(static_cast<uint32_t>(face.grid.nodes.cols()));
   report.set_min_scaled_jacobian(face.grid.min_scaled_jacobian);
-  report.set_area_cm2(face.skin_area * 1e4);
-  report.set_tissue_volume_ml(compute_tissue_volume(face.grid) * kMillilitrePerCubicMetre);
+  report.set_area_cm2(face.skin_area * kSquareCentimetresPerSquareMetre);
+  report.set_tissue_volume_ml(compute_tissue_volume(face.grid) * kMillilitresPerCubicMetre);
   report.set_scan_vertices_in_patch(static_cast<uint32_t>(face.riders.size()));
-  report.set_max_chart_deviation_mm(face.max_rider_distance * kMillimetrePerMetre);
+  report.set_max_chart_deviation_mm(face.max_rider_distance * kMillimetresPerMetre);
   for (const std::string& remark : face.scan_remarks) report.add_scan_remarks(remark);
   add_layers(model, report);
   if (model.bone) *report.mutable_bone() = to_bone_report(*model.bone);
@@ -119,20 +116,20 @@ v1::ScanReport to_scan_report(const geometry::SurfaceMesh& mesh, const geometry:
   report.set_boundary_loops(static_cast<uint32_t>(check.boundary_loops));
   report.set_non_manifold_edges(static_cast<uint32_t>(check.non_manifold_edges));
   report.set_degenerate_triangles(static_cast<uint32_t>(check.degenerate_triangles));
-  report.set_size_x_mm(check.extent.x() * kMillimetrePerMetre);
-  report.set_size_y_mm(check.extent.y() * kMillimetrePerMetre);
-  report.set_size_z_mm(check.extent.z() * kMillimetrePerMetre);
+  report.set_size_x_mm(check.extent.x() * kMillimetresPerMetre);
+  report.set_size_y_mm(check.extent.y() * kMillimetresPerMetre);
+  report.set_size_z_mm(check.extent.z() * kMillimetresPerMetre);
   return report;
 }
 
 v1::ComputingCost to_computing_cost(const mechanics::CostSum& sum) {
   v1::ComputingCost cost;
-  cost.set_cpu_ms(sum.times.total * kMillisecondPerSecond);
-  cost.set_element_cpu_ms(sum.times.element * kMillisecondPerSecond);
-  cost.set_factor_cpu_ms(sum.times.factor * kMillisecondPerSecond);
-  cost.set_solve_cpu_ms(sum.times.solve * kMillisecondPerSecond);
-  cost.set_film_cpu_ms(sum.times.film * kMillisecondPerSecond);
-  cost.set_coupling_cpu_ms(sum.times.coupling * kMillisecondPerSecond);
+  cost.set_cpu_ms(sum.times.total * kMillisecondsPerSecond);
+  cost.set_element_cpu_ms(sum.times.element * kMillisecondsPerSecond);
+  cost.set_factor_cpu_ms(sum.times.factor * kMillisecondsPerSecond);
+  cost.set_solve_cpu_ms(sum.times.solve * kMillisecondsPerSecond);
+  cost.set_film_cpu_ms(sum.times.film * kMillisecondsPerSecond);
+  cost.set_coupling_cpu_ms(sum.times.coupling * kMillisecondsPerSecond);
   cost.set_factorisations(sum.factorisations);
   cost.set_tissue_solves(sum.tissue_solves);
   cost.set_film_iterations(sum.film_iterations);
@@ -152,28 +149,28 @@ v1::Summary to_summary(const SessionView& view) {
   summary.set_hexahedra(static_cast<uint32_t>(view.n_hexahedra));
   summary.set_film_cells(static_cast<uint32_t>(view.n_film_cells));
   summary.set_dofs(static_cast<uint32_t>(view.n_dofs));
-  summary.set_injected_ml(step.injected * kMillilitrePerCubicMetre);
-  summary.set_film_volume_ml(step.film_volume * kMillilitrePerCubicMetre);
-  summary.set_gap_volume_ml(step.gap_volume * kMillilitrePerCubicMetre);
+  summary.set_injected_ml(step.injected * kMillilitresPerCubicMetre);
+  summary.set_film_volume_ml(step.film_volume * kMillilitresPerCubicMetre);
+  summary.set_gap_volume_ml(step.gap_volume * kMillilitresPerCubicMetre);
   summary.set_film_volume_relative_error(step.film_volume_relative_error);
   summary.set_gap_volume_relative_error(step.gap_volume_relative_error);
   summary.set_max_pressure_pa(step.max_pressure);
   summary.set_min_pressure_pa(step.min_pressure);
   summary.set_mean_pressure_pa(step.mean_pressure);
-  summary.set_max_thickness_mm(step.max_thickness * kMillimetrePerMetre);
-  summary.set_skin_max_displacement_mm(step.skin_max_displacement * kMillimetrePerMetre);
-  summary.set_skin_volume_change_ml(step.skin_volume_change * kMillilitrePerCubicMetre);
+  summary.set_max_thickness_mm(step.max_thickness * kMillimetresPerMetre);
+  summary.set_skin_max_displacement_mm(step.skin_max_displacement * kMillimetresPerMetre);
+  summary.set_skin_volume_change_ml(step.skin_volume_change * kMillilitresPerCubicMetre);
   summary.set_min_scaled_jacobian(step.min_scaled_jacobian);
   summary.set_state_hash(view.state_hash);
   summary.set_rejected_steps(step.rejected_steps);
-  summary.set_error_estimate_mm(step.error_estimate * kMillimetrePerMetre);
-  if (std::isfinite(step.settling_error)) summary.set_settling_error_mm(step.settling_error * kMillimetrePerMetre);
-  summary.set_void_volume_ml(step.void_volume * kMillilitrePerCubicMetre);
-  summary.set_undelivered_ml(step.undelivered * kMillilitrePerCubicMetre);
-  summary.set_elastic_energy_mj(step.elastic_energy * kMillijoulePerJoule);
-  summary.set_kinetic_energy_mj(step.kinetic_energy * kMillijoulePerJoule);
-  summary.set_injection_work_mj(step.injection_work * kMillijoulePerJoule);
-  summary.set_film_dissipation_mj(step.film_dissipation * kMillijoulePerJoule);
+  summary.set_error_estimate_mm(step.error_estimate * kMillimetresPerMetre);
+  if (std::isfinite(step.settling_error)) summary.set_settling_error_mm(step.settling_error * kMillimetresPerMetre);
+  summary.set_void_volume_ml(step.void_volume * kMillilitresPerCubicMetre);
+  summary.set_undelivered_ml(step.undelivered * kMillilitresPerCubicMetre);
+  summary.set_elastic_energy_mj(step.elastic_energy * kMillijoulesPerJoule);
+  summary.set_kinetic_energy_mj(step.kinetic_energy * kMillijoulesPerJoule);
+  summary.set_injection_work_mj(step.injection_work * kMillijoulesPerJoule);
+  summary.set_film_dissipation_mj(step.film_dissipation * kMillijoulesPerJoule);
   summary.set_closed_cells(static_cast<uint32_t>(step.closed_cells));
   if (view.preview) *summary.mutable_preview() = to_preview_summary(*view.preview);
   *summary.mutable_cost() = to_computing_cost(view.cost);
@@ -181,16 +178,16 @@ v1::Summary to_summary(const SessionView& view) {
     v1::LigamentSummary* ligament = summary.add_ligaments();
     ligament->set_name(report.name);
     ligament->set_tension_n(report.tension);
-    ligament->set_largest_length_mm(report.largest_length * kMillimetrePerMetre);
+    ligament->set_largest_length_mm(report.largest_length * kMillimetresPerMetre);
     ligament->set_points(static_cast<uint32_t>(report.points));
     ligament->set_broken_points(static_cast<uint32_t>(report.broken_points));
   }
   for (const simulation::ZoneReport& report : view.zones) {
     v1::ZoneSummary* zone = summary.add_zones();
     zone->set_name(report.name);
-    zone->set_volume_ml(report.volume * kMillilitrePerCubicMetre);
+    zone->set_volume_ml(report.volume * kMillilitresPerCubicMetre);
     zone->set_mean_pressure_pa(report.mean_pressure);
-    zone->set_max_thickness_mm(report.max_thickness * kMillimetrePerMetre);
+    zone->set_max_thickness_mm(report.max_thickness * kMillimetresPerMetre);
   }
   return summary;
 }
@@ -200,24 +197,24 @@ v1::SeriesRow to_series_row(const SeriesEntry& entry) {
   v1::SeriesRow row;
   row.set_step(step.step);
   row.set_time_s(step.time);
-  row.set_step_ms(step.step_size * kMillisecondPerSecond);
-  row.set_injected_ml(step.injected * kMillilitrePerCubicMetre);
-  row.set_film_volume_ml(step.film_volume * kMillilitrePerCubicMetre);
-  row.set_gap_volume_ml(step.gap_volume * kMillilitrePerCubicMetre);
+  row.set_step_ms(step.step_size * kMillisecondsPerSecond);
+  row.set_injected_ml(step.injected * kMillilitresPerCubicMetre);
+  row.set_film_volume_ml(step.film_volume * kMillilitresPerCubicMetre);
+  row.set_gap_volume_ml(step.gap_volume * kMillilitresPerCubicMetre);
   row.set_max_pressure_pa(step.max_pressure);
   row.set_min_pressure_pa(step.min_pressure);
-  row.set_max_thickness_mm(step.max_thickness * kMillimetrePerMetre);
-  row.set_skin_max_displacement_mm(step.skin_max_displacement * kMillimetrePerMetre);
-  row.set_skin_speed_mm_per_s(step.skin_speed * kMillimetrePerMetre);
-  for (const double thickness : step.probe_thickness) row.add_probe_thickness_mm(thickness * kMillimetrePerMetre);
+  row.set_max_thickness_mm(step.max_thickness * kMillimetresPerMetre);
+  row.set_skin_max_displacement_mm(step.skin_max_displacement * kMillimetresPerMetre);
+  row.set_skin_speed_mm_per_s(step.skin_speed * kMillimetresPerMetre);
+  for (const double thickness : step.probe_thickness) row.add_probe_thickness_mm(thickness * kMillimetresPerMetre);
   for (const double pressure : step.probe_pressure) row.add_probe_pressure_pa(pressure);
   row.set_wall_ms(entry.wall_ms);
   row.set_rejected_steps(step.rejected_steps);
-  row.set_error_estimate_mm(step.error_estimate * kMillimetrePerMetre);
-  row.set_void_volume_ml(step.void_volume * kMillilitrePerCubicMetre);
-  row.set_elastic_energy_mj(step.elastic_energy * kMillijoulePerJoule);
-  row.set_injection_work_mj(step.injection_work * kMillijoulePerJoule);
-  row.set_film_dissipation_mj(step.film_dissipation * kMillijoulePerJoule);
+  row.set_error_estimate_mm(step.error_estimate * kMillimetresPerMetre);
+  row.set_void_volume_ml(step.void_volume * kMillilitresPerCubicMetre);
+  row.set_elastic_energy_mj(step.elastic_energy * kMillijoulesPerJoule);
+  row.set_injection_work_mj(step.injection_work * kMillijoulesPerJoule);
+  row.set_film_dissipation_mj(step.film_dissipation * kMillijoulesPerJoule);
   row.set_ligament_tension_n(step.ligament_tension);
   row.set_broken_ligament_points(static_cast<uint32_t>(step.broken_ligament_points));
   row.set_closed_cells(static_cast<uint32_t>(step.closed_cells));
@@ -229,10 +226,10 @@ v1::SeriesRow to_series_row(const SeriesEntry& entry) {
 
 v1::DistanceStatistics to_distance_statistics(const geometry::DistanceStatistics& statistics) {
   v1::DistanceStatistics message;
-  message.set_mean_mm(statistics.mean * kMillimetrePerMetre);
-  message.set_rms_mm(statistics.rms * kMillimetrePerMetre);
-  message.set_p95_mm(statistics.p95 * kMillimetrePerMetre);
-  message.set_max_mm(statistics.max * kMillimetrePerMetre);
+  message.set_mean_mm(statistics.mean * kMillimetresPerMetre);
+  message.set_rms_mm(statistics.rms * kMillimetresPerMetre);
+  message.set_p95_mm(statistics.p95 * kMillimetresPerMetre);
+  message.set_max_mm(statistics.max * kMillimetresPerMetre);
   return message;
 }
 

@@ -3,18 +3,12 @@
 #include <algorithm>
 
 #include "core/anatomy/fat_presets.h"
+#include "core/base/units.h"
 #include "core/plan/step_rules.h"
 #include "server/wire/chart_conversion.h"
 
 namespace lipofill::server {
 namespace {
-
-constexpr double kCubicMetrePerMillilitre = 1e-6;
-constexpr double kPascalPerMetrePerKilopascalPerMillimetre = 1e6;
-constexpr double kSecondPerMillisecond = 1e-3;
-constexpr double kNewtonPerMetrePerNewtonPerMillimetre = 1e3;
-/// m2/(Pa s) in a mL/(s kPa cm).
-constexpr double kLeakageUnit = 1e-6 / (1e3 * 1e-2);
 
 geometry::ChartBox read_box(const v1::ChartBox& message, const FieldReader& reader) {
   return {reader.required(message.has_xi_min(), message.xi_min(), 1.0, "xi_min"),
@@ -35,7 +29,7 @@ plan::ZoneSpec read_zone(const v1::Zone& message, const FieldReader& reader) {
       const FieldReader disc = reader.below("disc");
       zone.shape = plan::Disc{
           read_skin_point(message.disc().centre(), disc.below("centre")),
-          disc.required(message.disc().has_radius_mm(), message.disc().radius_mm(), kMetrePerMillimetre, "radius_mm")};
+          disc.required(message.disc().has_radius_mm(), message.disc().radius_mm(), kMetresPerMillimetre, "radius_mm")};
       break;
     }
     case v1::Zone::kRegion:
@@ -58,7 +52,7 @@ void read_wall(const v1::FilmWall& message, const FieldReader& reader, plan::Fil
     case v1::FilmWall::WINKLER:
       film.wall = plan::FilmWallKind::kWinkler;
       film.wall_stiffness = reader.required(message.has_stiffness_kpa_per_mm(), message.stiffness_kpa_per_mm(),
-                                            kPascalPerMetrePerKilopascalPerMillimetre, "stiffness_kpa_per_mm");
+                                            kPascalsPerMetrePerKilopascalPerMillimetre, "stiffness_kpa_per_mm");
       break;
     default:
       film.wall = plan::FilmWallKind::kTissue;
@@ -105,20 +99,20 @@ plan::FilmSpec read_film(const v1::Film& message, const FieldReader& reader) {
   }
   if (message.has_rest_thickness_mm()) {
     film.rest_thickness =
-        read_scalar_field(message.rest_thickness_mm(), kMetrePerMillimetre, reader.below("rest_thickness_mm"));
+        read_scalar_field(message.rest_thickness_mm(), kMetresPerMillimetre, reader.below("rest_thickness_mm"));
   }
   if (message.has_initial_thickness_mm()) {
     film.initial_thickness =
-        read_scalar_field(message.initial_thickness_mm(), kMetrePerMillimetre, reader.below("initial_thickness_mm"));
+        read_scalar_field(message.initial_thickness_mm(), kMetresPerMillimetre, reader.below("initial_thickness_mm"));
   }
   const bool frictionless = message.wall_friction() == v1::NONE;
-  film.wall_friction = frictionless ? plan::WallFriction::kNone : plan::WallFriction::kNoSlip;
+  film.wall_friction = frictionless ? film::WallFriction::kNone : film::WallFriction::kNoSlip;
   read_wall(message.wall(), reader.below("wall"), film);
   for (int i = 0; i < message.walls_size(); ++i) {
     film.walls.push_back(read_wall_in_film(message.walls(i), reader.below("walls", i)));
   }
   film.connective_tissue = {
-      message.connective_tissue().stiffness_kpa_per_mm() * kPascalPerMetrePerKilopascalPerMillimetre,
+      message.connective_tissue().stiffness_kpa_per_mm() * kPascalsPerMetrePerKilopascalPerMillimetre,
       message.connective_tissue().entry_pressure_pa()};
   return film;
 }
@@ -128,9 +122,9 @@ plan::InjectionSpec read_injection(const v1::Injection& message, const FieldRead
   injection.zone = message.zone();
   if (message.zone().empty()) reader.missing("zone");
   injection.volume =
-      reader.required(message.has_volume_ml(), message.volume_ml(), kCubicMetrePerMillilitre, "volume_ml");
+      reader.required(message.has_volume_ml(), message.volume_ml(), kCubicMetresPerMillilitre, "volume_ml");
   injection.rate =
-      reader.required(message.has_rate_ml_per_s(), message.rate_ml_per_s(), kCubicMetrePerMillilitre, "rate_ml_per_s");
+      reader.required(message.has_rate_ml_per_s(), message.rate_ml_per_s(), kCubicMetresPerMillilitre, "rate_ml_per_s");
   if (message.has_start_s()) injection.start = message.start_s();
   if (message.has_site()) injection.site = read_skin_point(message.site(), reader.below("site"));
   return injection;
@@ -138,21 +132,21 @@ plan::InjectionSpec read_injection(const v1::Injection& message, const FieldRead
 
 void read_time(const v1::TimeControl& message, plan::SimulationSpec& spec) {
   if (message.goal() == v1::TimeControl::SETTLED_SHAPE) spec.goal = plan::TimeGoal::kSettledShape;
-  if (message.has_step_ms()) spec.step = message.step_ms() * kSecondPerMillisecond;
+  if (message.has_step_ms()) spec.step = message.step_ms() * kSecondsPerMillisecond;
   const plan::TimeFigures figures = plan::figures_of(spec.goal);
   if (figures.max_step.has_value()) spec.max_step = std::max(spec.step, *figures.max_step);
   if (figures.max_injection_step.has_value())
     spec.max_injection_step = std::max(spec.step, *figures.max_injection_step);
   spec.error_tolerance = figures.error_tolerance;
-  if (message.has_max_step_ms()) spec.max_step = message.max_step_ms() * kSecondPerMillisecond;
+  if (message.has_max_step_ms()) spec.max_step = message.max_step_ms() * kSecondsPerMillisecond;
   if (message.has_max_injection_step_ms()) {
-    spec.max_injection_step = message.max_injection_step_ms() * kSecondPerMillisecond;
+    spec.max_injection_step = message.max_injection_step_ms() * kSecondsPerMillisecond;
   }
   if (message.has_end_s()) spec.end = message.end_s();
   if (message.has_settle_skin_speed_mm_per_s()) {
-    spec.settle_skin_speed = message.settle_skin_speed_mm_per_s() * kMetrePerMillimetre;
+    spec.settle_skin_speed = message.settle_skin_speed_mm_per_s() * kMetresPerMillimetre;
   }
-  if (message.has_error_tolerance_mm()) spec.error_tolerance = message.error_tolerance_mm() * kMetrePerMillimetre;
+  if (message.has_error_tolerance_mm()) spec.error_tolerance = message.error_tolerance_mm() * kMetresPerMillimetre;
 }
 
 anatomy::FatPreset to_fat_preset(v1::FatPreset preset) {
@@ -208,9 +202,9 @@ plan::LigamentSpec read_ligament(const v1::Ligament& message, const FieldReader&
     reader.wrong("points", "are missing, and so is anatomical: one of them says where the ligament is");
   }
   if (message.has_stiffness_n_per_mm()) {
-    ligament.stiffness = message.stiffness_n_per_mm() * kNewtonPerMetrePerNewtonPerMillimetre;
+    ligament.stiffness = message.stiffness_n_per_mm() * kNewtonsPerMetrePerNewtonPerMillimetre;
   }
-  ligament.slack = message.slack_mm() * kMetrePerMillimetre;
+  ligament.slack = message.slack_mm() * kMetresPerMillimetre;
   if (message.has_breaking_force_n()) ligament.breaking_force = message.breaking_force_n();
   return ligament;
 }

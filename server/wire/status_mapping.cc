@@ -4,6 +4,7 @@
 
 #include "core/base/error_hints.h"
 #include "core/base/field_violations.h"
+#include "core/base/units.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "server/wire/error_message.h"
@@ -14,7 +15,7 @@ namespace {
 google::rpc::RetryInfo to_retry_info(double delay_s) {
   google::rpc::RetryInfo info;
   *info.mutable_retry_delay() =
-      google::protobuf::util::TimeUtil::MillisecondsToDuration(static_cast<int64_t>(1e3 * delay_s));
+      google::protobuf::util::TimeUtil::MillisecondsToDuration(static_cast<int64_t>(kMillisecondsPerSecond * delay_s));
   return info;
 }
 

@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "core/base/units.h"
 
 namespace lipofill::server {
 namespace {
@@ -21,9 +22,9 @@ std::optional<anatomy::TissuePreset> preset_of(const v1::ModelSpec& spec) {
 
 void fill(const anatomy::TissueFigures& figures, v1::TissueLayer& layer) {
   if (!layer.has_thickness_mm() && !layer.has_down_to_bone()) {
-    layer.mutable_thickness_mm()->set_constant(figures.thickness / 1e-3);
+    layer.mutable_thickness_mm()->set_constant(figures.thickness / kMetresPerMillimetre);
   }
-  if (!layer.has_youngs_modulus_kpa()) layer.set_youngs_modulus_kpa(figures.youngs_modulus / 1e3);
+  if (!layer.has_youngs_modulus_kpa()) layer.set_youngs_modulus_kpa(figures.youngs_modulus / kPascalsPerKilopascal);
   if (!layer.has_poisson_ratio()) layer.set_poisson_ratio(figures.poisson_ratio);
   if (!layer.has_density_kg_m3()) layer.set_density_kg_m3(figures.density);
 }

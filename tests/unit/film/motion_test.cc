@@ -43,7 +43,7 @@ struct Box {
 /// Taylor-Green decay after time 1 with nu = 0.01, relative to the start.
 double decay(int n, int steps, double friction_thickness) {
   const Box box(n, kPi);
-  Fat fat{0.01, 1.0, friction_thickness > 0.0};
+  Fat fat{0.01, 1.0, friction_thickness > 0.0 ? WallFriction::kNoSlip : WallFriction::kNone};
   const double h = friction_thickness > 0.0 ? friction_thickness : 1.0;
   ImplicitViscosity viscosity(box.grid);
   Eigen::VectorXd u = box.vortex();
@@ -73,7 +73,8 @@ TEST(Viscosity, NeverAddsEnergyHoweverLargeTheStep) {
   const Eigen::VectorXd cells = Eigen::VectorXd::Constant(box.grid.n_cells(), 1e-3);
   const Eigen::VectorXd edges = Eigen::VectorXd::Constant(box.grid.n_edges(), 1e-3);
   for (const double dt : {1e-3, 1.0, 1e3}) {
-    EXPECT_LE(viscosity.advance(box.grid, box.metric, {15.0, 920.0, true}, cells, edges, u, dt).norm(), u.norm());
+    EXPECT_LE(viscosity.advance(box.grid, box.metric, {15.0, 920.0, WallFriction::kNoSlip}, cells, edges, u, dt).norm(),
+              u.norm());
   }
 }
 
@@ -125,7 +126,7 @@ TEST(Viscosity, SolvesTheSystemOfItsDocstring) {
   edges[17] = 0.0;
   const Eigen::VectorXd filled = edges.cwiseMax(1e-7);
   const Eigen::VectorXd u = Eigen::VectorXd::Random(box.grid.n_edges());
-  for (const bool wall_friction : {true, false}) {
+  for (const WallFriction wall_friction : {WallFriction::kNoSlip, WallFriction::kNone}) {
     for (const double dt : {1e-3, 10.0}) {
       const Fat fat{15.0, 920.0, wall_friction};
       Eigen::VectorXd damped = filled;
@@ -134,7 +135,7 @@ TEST(Viscosity, SolvesTheSystemOfItsDocstring) {
       Eigen::VectorXd expected = system.ldlt().solve(make_mass(box, filled) * u);
       expected[17] = 0.0;
       const Eigen::VectorXd next = viscosity.advance(box.grid, box.metric, fat, cells, edges, u, dt);
-      EXPECT_LT((next - expected).norm(), 1e-10 * expected.norm()) << wall_friction << " " << dt;
+      EXPECT_LT((next - expected).norm(), 1e-10 * expected.norm()) << static_cast<int>(wall_friction) << " " << dt;
     }
   }
 }
@@ -190,11 +191,11 @@ TEST(Advection, CarriesAPatternDownstream) {
 }
 
 TEST(Rheology, ConductanceGoesFromInertiaToLubrication) {
-  const Fat thick{1000.0, 920.0, true};
+  const Fat thick{1000.0, 920.0, WallFriction::kNoSlip};
   EXPECT_NEAR(compute_conductance(thick, 1e-3, 0.01), 1e-9 / (12.0 * 1000.0), 1e-9 / 12000.0 * 1e-5);
-  const Fat thin{1e-9, 920.0, true};
+  const Fat thin{1e-9, 920.0, WallFriction::kNoSlip};
   EXPECT_NEAR(compute_conductance(thin, 1e-3, 0.01), 1e-3 * 0.01 / 920.0, 1e-3 * 0.01 / 920.0 * 1e-5);
-  const Fat paper{15.0, 920.0, false};
+  const Fat paper{15.0, 920.0, WallFriction::kNone};
   EXPECT_DOUBLE_EQ(compute_conductance(paper, 1e-3, 0.01), 1e-3 * 0.01 / 920.0);
   EXPECT_EQ(compute_conductance(thick, 0.0, 0.01), 0.0);
 }

@@ -137,7 +137,7 @@ TEST(SimulationConversion, TurnsUnitsToSi) {
   EXPECT_DOUBLE_EQ(std::get<plan::PaintedRegion>(film.zones[3].shape).cover.at(0.25, 0.5), 0.25);
   EXPECT_DOUBLE_EQ(film.rest_thickness.at(0, 0), 1e-4);
   EXPECT_DOUBLE_EQ(film.initial_thickness->at(0, 0), 2e-4);
-  EXPECT_EQ(film.wall_friction, plan::WallFriction::kNone);
+  EXPECT_EQ(film.wall_friction, film::WallFriction::kNone);
   EXPECT_EQ(film.wall, plan::FilmWallKind::kWinkler);
   EXPECT_DOUBLE_EQ(film.wall_stiffness, 2e6);
   EXPECT_DOUBLE_EQ(spec->injections[0].volume, 2e-6);

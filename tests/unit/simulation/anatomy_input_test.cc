@@ -53,7 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadPlan{"YieldWithoutFriction",
                 [](auto& s) {
                   s.fat_yield_stress = 5;
-                  s.films[0].wall_friction = plan::WallFriction::kNone;
+                  s.films[0].wall_friction = film::WallFriction::kNone;
                 },
                 "films[0].wall_friction", "NONE"},
         BadPlan{"SuctionLimit", [](auto& s) { s.suction_limit = -1; }, "suction_limit_pa", "-1 Pa"},

@@ -149,9 +149,9 @@ TEST_P(ProjectionAllocations, AreNone) {
 
 constexpr double kStiff = std::numeric_limits<double>::infinity();
 INSTANTIATE_TEST_SUITE_P(Fats, ProjectionAllocations,
-                         ::testing::Values(film::Fat{15.0, 920.0, true},
-                                           film::Fat{15.0, 920.0, true, 0.5, 50.0, kStiff},
-                                           film::Fat{15.0, 920.0, true, 1.0, 0.0, 70.0}));
+                         ::testing::Values(film::Fat{15.0, 920.0, film::WallFriction::kNoSlip},
+                                           film::Fat{15.0, 920.0, film::WallFriction::kNoSlip, 0.5, 50.0, kStiff},
+                                           film::Fat{15.0, 920.0, film::WallFriction::kNoSlip, 1.0, 0.0, 70.0}));
 
 }  // namespace
 }  // namespace lipofill::simulation

@@ -12,9 +12,11 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kNu = 0.01;
+constexpr auto kDrag = film::WallFriction::kNoSlip;
+constexpr auto kNoDrag = film::WallFriction::kNone;
 
 /// Implicit steps of viscosity alone on a film of thickness 1, with a body force [m/s2] a unit of velocity.
-Eigen::VectorXd diffuse(const FlatBox& box, bool wall_friction, Eigen::VectorXd u, double time, int steps,
+Eigen::VectorXd diffuse(const FlatBox& box, film::WallFriction wall_friction, Eigen::VectorXd u, double time, int steps,
                         const Eigen::VectorXd& force) {
   film::ImplicitViscosity viscosity(box.grid);
   film::Fat fat;
@@ -29,7 +31,7 @@ Eigen::VectorXd diffuse(const FlatBox& box, bool wall_friction, Eigen::VectorXd 
 }
 
 /// What is left of the vortex after time 1: a quarter of the 2 pi box, which free-slip walls cut out.
-double vortex_decay(int n, int steps, bool wall_friction) {
+double vortex_decay(int n, int steps, film::WallFriction wall_friction) {
   const FlatBox box(n, n, kPi, kPi);
   const Eigen::VectorXd start = box.flow_of([](double x, double y) { return std::sin(x) * std::sin(y); });
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(start.size());
@@ -39,12 +41,12 @@ double vortex_decay(int n, int steps, bool wall_friction) {
 TEST(TaylorGreen, DecaysWithAndWithoutWallDrag) {
   Case vortex({"film/4a-taylor-green", "Taylor-Green vortex, nu = 0.01, after t = 1",
                "exp(-2 nu t), times exp(-12 nu t/h^2) with wall drag, h = 1."});
-  vortex.record({"velocity left, no drag", "1", 0.980199, vortex_decay(32, 40, false), 5e-5, Bound::kAbsolute});
-  vortex.record({"velocity left, wall drag", "1", 0.869358, vortex_decay(16, 400, true), 3e-4, Bound::kAbsolute});
+  vortex.record({"velocity left, no drag", "1", 0.980199, vortex_decay(32, 40, kNoDrag), 5e-5, Bound::kAbsolute});
+  vortex.record({"velocity left, wall drag", "1", 0.869358, vortex_decay(16, 400, kDrag), 3e-4, Bound::kAbsolute});
   std::vector<double> in_time, in_space;
   const double euler = std::pow(1.0 + 0.02 / 100.0, -100.0);  // what implicit Euler makes of the rate itself
-  for (const int steps : {5, 10, 20}) in_time.push_back(vortex_decay(16, steps, true) / std::exp(-0.14) - 1.0);
-  for (const int n : {8, 16, 32}) in_space.push_back(vortex_decay(n, 100, false) / euler - 1.0);
+  for (const int steps : {5, 10, 20}) in_time.push_back(vortex_decay(16, steps, kDrag) / std::exp(-0.14) - 1.0);
+  for (const int n : {8, 16, 32}) in_space.push_back(vortex_decay(n, 100, kNoDrag) / euler - 1.0);
   vortex.record_series({"velocity left, wall drag", "steps", {5, 10, 20}, in_time, 1.0, 0.9});
   vortex.record_series({"velocity left, no drag", "cells a side", {8, 16, 32}, in_space, 2.0, 1.8});
 }
@@ -87,7 +89,7 @@ Across run_across(int n, double time, int steps, Start start, Force force, Exact
       a[box.x_edge(i, j)] = width * force(across.y.back());
     }
   }
-  across.measured = speeds_across(box, diffuse(box, false, u, time, steps, a), width);
+  across.measured = speeds_across(box, diffuse(box, kNoDrag, u, time, steps, a), width);
   return across;
 }
 

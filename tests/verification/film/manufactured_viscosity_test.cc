@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kDt = 0.2;
-const film::Fat kFat{0.06, 1.5, true};
+const film::Fat kFat{0.06, 1.5, film::WallFriction::kNoSlip};
 constexpr double kNu = 0.06 / 1.5;
 
 /// Velocity and thickness that meet the walls as the operator assumes: u.n = 0, curl u = 0, d(h div u)/dn = 0.

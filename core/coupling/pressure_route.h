@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/coupling/pressure_system.h"
+#include "core/coupling/wall_compliance.h"
+
+namespace lipofill::coupling {
+
+/// Since the start.
+struct PressureCounts {
+  long iterative_solves = 0;  ///< by conjugate gradients
+  long iterations = 0;        ///< of those
+  long fallbacks = 0;         ///< times that they did not converge
+};
+
+/// A way to solve
+///
+///     (dt J + C) dp = r,   dp = 0 in the cells that are held
+///
+/// for one kind of walls: diagonal_pressure_route.h, dense_pressure_route.h, lagged_pressure_route.h and
+/// implicit_pressure_route.h. PressureSolver chooses.
+class PressureRoute {
+ public:
+  virtual ~PressureRoute() = default;
+
+  /// The walls of the solves to come, always of one kind; what it points to must outlive them.
+  virtual void set_walls(const WallCompliance& walls) = 0;
+  /// C p.
+  virtual void multiply_walls(const Eigen::VectorXd& p, Eigen::VectorXd& product) = 0;
+
+  /// @param r          0 in the cells that are held
+  /// @param tolerance  of conjugate gradients: the largest residual that may be left [m3]
+  /// @param moved      C dp [m3]
+  /// Returns false when the matrix cannot be factored, or nothing converges.
+  virtual bool solve(const PressureSystem& system, const Eigen::VectorXd& r, double tolerance, Eigen::VectorXd& dp,
+                     Eigen::VectorXd& moved) = 0;
+
+  /// Whether solves with new walls need keep_mobility first.
+  virtual bool is_lagged() const { return false; }
+  /// @param mobility  J0, the values of dt J of each film
+  virtual void keep_mobility(const PressureSystem& /*system*/, const std::vector<Eigen::VectorXd>& /*mobility*/) {}
+
+  virtual PressureCounts counts() const { return {}; }
+};
+
+}  // namespace lipofill::coupling

@@ -5,7 +5,7 @@
 
 namespace lipofill::server {
 
-/// So many of something in each period. Thread-safe. Checked by tests/unit/security/authenticator_test.cc.
+/// So many of something in each period. Thread-safe. Checked by tests/unit/server/security/authenticator_test.cc.
 class Allowance {
  public:
   using Clock = std::chrono::steady_clock;

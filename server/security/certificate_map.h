@@ -15,7 +15,7 @@ struct CertificateEntry {
   Principal principal;
 };
 
-/// Who holds which client certificate. Checked by tests/unit/security/certificate_map_test.cc.
+/// Who holds which client certificate. Checked by tests/unit/server/security/certificate_map_test.cc.
 class CertificateMap {
  public:
   /// JSON: {"certificates": [{"common_name": "planner-3", "tenant": "ward3", "roles": ["planner"]}, ...]}; in place of

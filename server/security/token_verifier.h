@@ -12,7 +12,7 @@ namespace lipofill::server {
 
 /// Tells who a bearer token speaks of (decision 016). The key fixes the algorithm: the header's only chooses among the
 /// keys, so that neither "none" nor a public key taken for a shared secret gets anywhere. The file of keys may change
-/// while the daemon runs. Thread-safe. Checked by tests/unit/security/token_verifier_test.cc.
+/// while the daemon runs. Thread-safe. Checked by tests/unit/server/security/token_verifier_test.cc.
 class TokenVerifier {
  public:
   /// INVALID_ARGUMENT naming the file and what is wrong with it.

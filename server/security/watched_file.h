@@ -13,7 +13,7 @@
 namespace lipofill::server {
 
 /// What a file says, read again once the file has changed. A change that cannot be understood is logged, and what was
-/// said before holds on. Thread-safe. Checked by tests/unit/security/watched_file_test.cc.
+/// said before holds on. Thread-safe. Checked by tests/unit/server/security/watched_file_test.cc.
 template <typename Content>
 class WatchedFile {
  public:

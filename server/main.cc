@@ -13,7 +13,7 @@
 #include "server/backend/backend_metrics.h"
 #include "server/backend/parking.h"
 #include "server/backend/simulation_recovery.h"
-#include "server/entry/grpc_server.h"
+#include "server/grpc_server.h"
 #include "server/ops/drain_guard.h"
 #include "server/ops/logging.h"
 #include "server/ops/metrics_server.h"

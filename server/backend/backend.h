@@ -7,9 +7,9 @@
 
 #include "absl/status/statusor.h"
 #include "server/backend/result_keeper.h"
-#include "server/entry/size_limits.h"
-#include "server/frames/courier.h"
+#include "server/backend/size_limits.h"
 #include "server/ops/metrics.h"
+#include "server/sessions/courier.h"
 #include "server/sessions/model_cache.h"
 #include "server/sessions/operations.h"
 #include "server/sessions/session_manager.h"

@@ -3,7 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "core/base/hash.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 
 namespace lipofill::server {
 namespace {

@@ -1,8 +1,6 @@
 #include "absl/strings/str_cat.h"
-#include "core/geometry/surface_reader.h"
 #include "server/backend/backend.h"
-#include "server/backend/scan_reading.h"
-#include "server/patients/model_building.h"
+#include "server/backend/model_reading.h"
 #include "server/wire/names.h"
 
 namespace lipofill::server {

@@ -2,8 +2,12 @@
 
 #include <algorithm>
 
+#include "absl/strings/str_cat.h"
+#include "core/base/error_hints.h"
 #include "server/backend/simulation_recovery.h"
 #include "server/sessions/thread_name.h"
+#include "server/store/record_names.h"
+#include "server/wire/names.h"
 
 namespace lipofill::server {
 namespace {
@@ -30,6 +34,20 @@ absl::StatusOr<std::shared_ptr<Session>> find_or_wake(Backend& backend, const st
   if (!record.ok()) return record.status();
   if (!is_parked(*record)) return nullptr;
   return wake_simulation(backend, *record);
+}
+
+absl::Status no_session_for(const char* what, const SimulationRecord& record) {
+  const std::string cannot = absl::StrCat("cannot ", what, ": ", simulation_name(record.id));
+  if (has_ended(record.state)) {
+    return absl::FailedPreconditionError(absl::StrCat(cannot, " is ", state_name(record.state)));
+  }
+  if (record.reason.empty()) {
+    // Its record is there, and can be listed, a moment before its session is.
+    constexpr double retry_delay_s = 0.1;
+    return with_hints(absl::UnavailableError(absl::StrCat(cannot, " is being made, try again")),
+                      {"BEING_MADE", retry_delay_s});
+  }
+  return absl::UnavailableError(absl::StrCat(cannot, " was not brought back: ", record.reason));
 }
 
 ParkingAttendant::ParkingAttendant(Backend& backend, Seconds idle) : backend_(backend), idle_(idle) {

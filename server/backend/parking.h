@@ -20,6 +20,10 @@ bool is_parked(const SimulationRecord& record);
 /// for it now. Checked by tests/integration/service/parking_test.cc.
 absl::StatusOr<std::shared_ptr<Session>> find_or_wake(Backend& backend, const std::string& id);
 
+/// Why a command finds no session: FAILED_PRECONDITION for a simulation that has ended, UNAVAILABLE for one that could
+/// not be brought back, or that is still being made (reason BEING_MADE, to be tried again).
+absl::Status no_session_for(const char* what, const SimulationRecord& record);
+
 /// Parks simulations that are READY or PAUSED, are not watched, and of which nothing was asked for a time. Looking at
 /// their figures does not count.
 class ParkingAttendant {

@@ -6,7 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "lipofill/v1/simulation_service.pb.h"
 #include "server/sessions/identifiers.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 #include "server/wire/frame_encoding.h"
 #include "server/wire/report_conversion.h"
 #include "spdlog/spdlog.h"

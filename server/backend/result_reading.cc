@@ -6,7 +6,7 @@
 #include "server/backend/evaluation.h"
 #include "server/backend/parking.h"
 #include "server/backend/scan_reading.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 #include "server/wire/frame_encoding.h"
 #include "server/wire/names.h"
 #include "server/wire/report_conversion.h"

@@ -2,7 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "lipofill/v1/patient_service.pb.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 
 namespace lipofill::server {
 namespace {

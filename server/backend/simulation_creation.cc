@@ -1,11 +1,11 @@
 #include "server/backend/simulation_creation.h"
 
 #include "absl/strings/str_cat.h"
+#include "server/backend/await.h"
 #include "server/backend/parking.h"
-#include "server/entry/await.h"
 #include "server/sessions/draining.h"
 #include "server/sessions/identifiers.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 #include "server/wire/etag.h"
 #include "server/wire/names.h"
 #include "server/wire/report_conversion.h"

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "server/backend/checkpoint_loading.h"
+#include "server/backend/guarded.h"
 #include "server/backend/parking.h"
 #include "server/backend/simulation_creation.h"
-#include "server/entry/unary.h"
 #include "server/sessions/draining.h"
 #include "server/sessions/identifiers.h"
-#include "server/simulations/checkpoint_calls.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 #include "server/wire/simulation_conversion.h"
 #include "spdlog/spdlog.h"
 

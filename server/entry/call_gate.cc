@@ -7,7 +7,7 @@
 #include "server/entry/method_rules.h"
 #include "server/security/refusals.h"
 #include "server/sessions/draining.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 #include "spdlog/spdlog.h"
 
 namespace lipofill::server {

@@ -62,11 +62,6 @@ const MethodRule* rule_of(const std::string& method) {
   return found == rules().end() ? nullptr : &found->second;
 }
 
-Effect effect_of(const std::string& method) {
-  const MethodRule* rule = rule_of(method);
-  return rule == nullptr ? Effect::kNone : rule->effect;
-}
-
 bool has_rule(const std::string& method) {
   return rule_of(method) != nullptr;
 }

@@ -22,12 +22,8 @@ struct MethodRule {
 };
 
 /// The rule of a method by its full name, "/lipofill.v1.PatientService/GetPatient"; nullptr without one: nobody may
-/// call it.
+/// call it. A new method must have its line in the table: tests/unit/server/entry/call_test.cc walks all services.
 const MethodRule* rule_of(const std::string& method);
-
-/// The effect of a method by its full name, "/lipofill.v1.PatientService/GetPatient"; kNone of one that there is not. A
-/// new method must have its line in the table: tests/unit/server/call_test.cc walks all services.
-Effect effect_of(const std::string& method);
 
 /// True when the table has the method.
 bool has_rule(const std::string& method);

@@ -3,14 +3,13 @@
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
-#include <exception>
 #include <functional>
-#include <new>
 #include <utility>
 
 #include "absl/status/status.h"
 #include "core/base/unwanted.h"
 #include "server/backend/backend.h"
+#include "server/backend/guarded.h"
 #include "server/entry/call.h"
 #include "server/entry/call_gate.h"
 #include "server/security/refusals.h"
@@ -19,25 +18,6 @@
 #include "server/wire/status_mapping.h"
 
 namespace lipofill::server {
-
-/// Carries out `work`; whatever it throws becomes a status: nothing may leave the daemon's edge as an exception.
-template <typename Work>
-absl::Status guarded(Work&& work) {
-  try {
-    return work();
-  } catch (const std::bad_alloc&) {
-    return absl::ResourceExhaustedError("out of memory");
-  } catch (const std::exception& error) {
-    return absl::InternalError(error.what());
-  }
-}
-
-/// The same, unless nobody wants it: CANCELLED.
-template <typename Work>
-absl::Status guarded_if_wanted(const Unwanted& unwanted, Work&& work) {
-  const absl::Status wanted = check_wanted(unwanted);
-  return wanted.ok() ? guarded(work) : wanted;
-}
 
 /// True once whoever called has cancelled, has gone, or has a deadline that has passed. Until the call was answered.
 inline Unwanted caller_has_left(grpc::CallbackServerContext* context) {

@@ -8,7 +8,6 @@
 #include "server/entry/unary.h"
 #include "server/sessions/draining.h"
 #include "server/sessions/shortage.h"
-#include "server/simulations/checkpoint_calls.h"
 #include "server/wire/names.h"
 
 namespace lipofill::server {

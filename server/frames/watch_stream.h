@@ -12,8 +12,8 @@
 #include <string>
 
 #include "server/backend/kept_result.h"
-#include "server/frames/courier.h"
 #include "server/ops/metrics.h"
+#include "server/sessions/courier.h"
 #include "server/sessions/viewer.h"
 #include "server/wire/frame_encoding.h"
 

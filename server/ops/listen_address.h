@@ -20,7 +20,7 @@ struct ListenAddress {
 };
 
 /// Reads "HOST:PORT", "[IPV6]:PORT" or "unix:PATH". INVALID_ARGUMENT saying what is wrong with it.
-/// Checked by tests/unit/server/settings_test.cc.
+/// Checked by tests/unit/server/ops/settings_test.cc.
 absl::StatusOr<ListenAddress> parse_listen_address(const std::string& text);
 
 }  // namespace lipofill::server

@@ -8,7 +8,7 @@ namespace lipofill::server {
 
 /// Reports to the service manager that started the daemon, by systemd's protocol: datagrams to the
 /// UNIX socket NOTIFY_SOCKET, and a sign of life within every WATCHDOG_USEC. Without the variables
-/// nothing is sent. Checked by tests/unit/server/service_manager_test.cc and
+/// nothing is sent. Checked by tests/unit/server/ops/service_manager_test.cc and
 /// tests/integration/service/drain_test.cc.
 class ServiceManager {
  public:

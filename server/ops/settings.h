@@ -49,7 +49,7 @@ absl::StatusOr<GivenValues> read_settings_file(const std::string& path, const st
 GivenValues read_settings_environment(const std::vector<Setting>& settings);
 
 /// Puts what was given in place, and notes what is not a value of its setting: the setting, the text, where it came
-/// from and the bound. Checked by tests/unit/server/settings_test.cc.
+/// from and the bound. Checked by tests/unit/server/ops/settings_test.cc.
 void assign_settings(const std::vector<Setting>& settings, const GivenValues& given, FieldViolations& violations);
 
 }  // namespace lipofill::server

@@ -13,10 +13,6 @@ namespace lipofill::server {
 
 v1::Model to_model(const ModelRecord& record);
 
-/// A specification in SI, with the surfaces of its scans read. Field violations relative to the message.
-absl::StatusOr<model::FaceModelSpec> read_model_spec(Backend& backend, const std::string& patient,
-                                                     const v1::ModelSpec& message);
-
 /// Starts the operation that builds a model, or finds the one an equal request started. What can be refused at once is.
 absl::StatusOr<OperationView> start_model_build(Backend& backend, const Principal& caller,
                                                 const v1::BuildModelRequest& request);

@@ -9,7 +9,7 @@
 #include "server/patients/operation_service.h"
 #include "server/security/refusals.h"
 #include "server/sessions/identifiers.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 #include "server/wire/etag.h"
 #include "server/wire/field_mask.h"
 #include "server/wire/names.h"

@@ -9,7 +9,7 @@
 #include "server/backend/scan_reading.h"
 #include "server/entry/unary.h"
 #include "server/sessions/identifiers.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 #include "server/wire/names.h"
 #include "server/wire/report_conversion.h"
 #include "server/wire/request_key.h"

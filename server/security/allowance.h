@@ -6,7 +6,7 @@
 namespace lipofill::server {
 
 /// Allows so many of something in each period. Thread-safe. Checked by
-/// tests/unit/security/authenticator_test.cc.
+/// tests/unit/server/security/authenticator_test.cc.
 class Allowance {
  public:
   using Clock = std::chrono::steady_clock;

@@ -14,7 +14,7 @@ namespace lipofill::server {
 /// the hash of the line before, so that a line that was changed, taken out or put in is found
 /// (verify_audit). Lines are only ever added (O_APPEND). A file that has grown to its size is
 /// renamed to "{file}.{number of its last line}" and stays: nothing is ever deleted, that is for
-/// whoever archives it. Thread-safe. Checked by tests/unit/security/audit_log_test.cc and
+/// whoever archives it. Thread-safe. Checked by tests/unit/server/security/audit_log_test.cc and
 /// tests/integration/security/audit_test.cc.
 class AuditLog {
  public:

@@ -16,7 +16,7 @@ struct CertificateEntry {
 };
 
 /// Maps client certificates to their holders. Checked by
-/// tests/unit/security/certificate_map_test.cc.
+/// tests/unit/server/security/certificate_map_test.cc.
 class CertificateMap {
  public:
   /// JSON: {"certificates": [{"common_name": "planner-3", "tenant": "ward3", "roles": ["planner"]}, ...]}; in place of

@@ -17,7 +17,7 @@ struct ClaimRules {
 /// text or a list), exp, nbf and iat where present, sub (1 to 256 bytes), tenant, roles (a list;
 /// the highest counts), and where it is limited to some patients `patients`, a list of ids.
 /// UNAUTHENTICATED with a reason for each way to be wrong. Checked by
-/// tests/unit/security/claims_test.cc.
+/// tests/unit/server/security/claims_test.cc.
 absl::StatusOr<Principal> read_claims(const nlohmann::json& claims, const ClaimRules& rules,
                                       Principal::Clock::time_point now);
 

@@ -13,7 +13,7 @@ namespace lipofill::server {
 /// Tells of whom a bearer token speaks (decision 016). The key fixes the algorithm: the header's
 /// only chooses among the keys, so that neither "none" nor a public key taken for a shared secret
 /// gets anywhere. The file of keys may change while the daemon runs. Thread-safe. Checked by
-/// tests/unit/security/token_verifier_test.cc.
+/// tests/unit/server/security/token_verifier_test.cc.
 class TokenVerifier {
  public:
   /// Opens the file of keys. INVALID_ARGUMENT naming the file and what is wrong with it.

@@ -14,7 +14,7 @@ namespace lipofill::server {
 
 /// The content of a file, read again once the file has changed. A change that cannot be understood
 /// is logged, and the earlier content still holds. Thread-safe. Checked by
-/// tests/unit/security/watched_file_test.cc.
+/// tests/unit/server/security/watched_file_test.cc.
 template <typename Content>
 class WatchedFile {
  public:

@@ -17,7 +17,7 @@ namespace lipofill::server {
 /// that groups take turns also where there is room for one only; in a group, and among groups of
 /// which nobody was let in, first come, first served. A group without anybody in or waiting is
 /// forgotten: when it comes again it is as one that was never there. Checked by
-/// tests/unit/server/admission_queue_test.cc.
+/// tests/unit/server/sessions/admission_queue_test.cc.
 template <typename Item>
 class AdmissionQueue {
  public:

@@ -12,7 +12,7 @@
 namespace lipofill::server {
 
 /// Built models, the most recently used few, by resource name. Simulations hold on to theirs longer.
-/// Checked by tests/unit/server/model_cache_test.cc.
+/// Checked by tests/unit/server/sessions/model_cache_test.cc.
 class ModelCache {
  public:
   using Model = std::shared_ptr<const model::FaceModel>;

@@ -30,7 +30,7 @@ struct OperationView {
 };
 
 /// The operations of this run of the daemon; they do not outlive it, what they made does. Of those that are done the
-/// last thousand are remembered. Checked by tests/unit/server/operations_test.cc.
+/// last thousand are remembered. Checked by tests/unit/server/sessions/operations_test.cc.
 class Operations {
  public:
   using Clock = std::chrono::steady_clock;

@@ -67,7 +67,8 @@ struct SessionHistory {
 ///
 /// One lock (`execution_`) is held by whoever acts on the simulation. Commands go through a mailbox; they are carried
 /// out at once when the simulation is at rest between turns, otherwise by the worker after the step at hand. Checked by
-/// tests/unit/server/session_test.cc, tests/unit/server/session_resume_test.cc and tests/integration/.
+/// tests/unit/server/sessions/session_test.cc, tests/unit/server/sessions/session_resume_test.cc and
+/// tests/integration/.
 class Session : public WorkerPool::Task, public std::enable_shared_from_this<Session> {
  public:
   using Clock = WorkerPool::Clock;

@@ -21,7 +21,7 @@ struct SessionBounds {
 };
 
 /// The simulations in memory: those that have not ended, but for those that are parked. Their number, of all and of
-/// each tenant, and what they take are bounded. Checked by tests/unit/server/session_manager_test.cc.
+/// each tenant, and what they take are bounded. Checked by tests/unit/server/sessions/session_manager_test.cc.
 class SessionManager {
  public:
   explicit SessionManager(const SessionBounds& bounds) : bounds_(bounds) {}

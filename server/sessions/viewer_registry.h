@@ -11,7 +11,7 @@
 namespace lipofill::server {
 
 /// Viewers under way that acknowledge frames, by simulation and name. Thread-safe.
-/// Checked by tests/unit/server/viewer_registry_test.cc.
+/// Checked by tests/unit/server/sessions/viewer_registry_test.cc.
 class ViewerRegistry {
  public:
   /// A viewer of the same name, which its client has left for this one, is closed with ABORTED.

@@ -21,7 +21,7 @@ namespace lipofill::server {
 /// more of the threads than one with a single task, and tasks with long turns and tasks with short ones get the same
 /// share, so that a long simulation cannot starve a short one. At most `max_active` tasks share the threads; others
 /// wait in a queue (AdmissionQueue), which is fair between groups too, until one of those wants no more turns. A task
-/// is on one thread at a time. Checked by tests/unit/server/worker_pool_test.cc.
+/// is on one thread at a time. Checked by tests/unit/server/sessions/worker_pool_test.cc.
 class WorkerPool {
  public:
   using Clock = std::chrono::steady_clock;

@@ -3,13 +3,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/base/error_hints.h"
 #include "core/base/field_violations.h"
+#include "server/backend/await.h"
+#include "server/backend/checkpoint_loading.h"
 #include "server/backend/parking.h"
 #include "server/backend/simulation_creation.h"
-#include "server/entry/await.h"
 #include "server/sessions/identifiers.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 #include "server/wire/names.h"
 #include "server/wire/request_key.h"
 #include "server/wire/timestamps.h"
@@ -20,11 +20,6 @@ namespace {
 
 /// The id, in its new simulation, of the checkpoint that one began from.
 constexpr char kOriginId[] = "origin";
-
-absl::Status damaged(const CheckpointRecord& record, const absl::Status& why) {
-  return absl::Status(why.code(), absl::StrCat(checkpoint_name(record.simulation, record.id),
-                                               " cannot be used: ", std::string(why.message())));
-}
 
 struct RestoreTarget {
   CheckpointRecord checkpoint;
@@ -134,38 +129,6 @@ v1::Checkpoint to_checkpoint(const CheckpointRecord& record) {
   checkpoint.set_automatic(record.kind == CheckpointKind::kAutomatic);
   checkpoint.set_on_course(record.on_course);
   return checkpoint;
-}
-
-absl::Status no_session_for(const char* what, const SimulationRecord& record) {
-  const std::string cannot = absl::StrCat("cannot ", what, ": ", simulation_name(record.id));
-  if (has_ended(record.state)) {
-    return absl::FailedPreconditionError(absl::StrCat(cannot, " is ", state_name(record.state)));
-  }
-  if (record.reason.empty()) {
-    // The record is there, and can be listed, a moment before the session is.
-    constexpr double retry_delay_s = 0.1;
-    return with_hints(absl::UnavailableError(absl::StrCat(cannot, " is being made, try again")),
-                      {"BEING_MADE", retry_delay_s});
-  }
-  return absl::UnavailableError(absl::StrCat(cannot, " was not brought back: ", record.reason));
-}
-
-absl::StatusOr<LoadedCheckpoint> load_checkpoint(Backend& backend, const CheckpointRecord& record,
-                                                 const std::string& model) {
-  LoadedCheckpoint loaded;
-  auto content = backend.checkpoint_files.read(record.simulation, record.id, record.sha256);
-  if (!content.ok()) return damaged(record, content.status());
-  loaded.content = *std::move(content);
-  if (!loaded.spec.ParseFromString(loaded.content.spec_message)) {
-    return damaged(record, absl::DataLossError("its plan cannot be read"));
-  }
-  auto simulation = make_simulation(backend, model, loaded.spec);
-  if (!simulation.ok()) return simulation.status();
-  loaded.simulation = *std::move(simulation);
-  if (auto restored = loaded.simulation->restore(loaded.content.snapshot); !restored.ok()) {
-    return damaged(record, restored);
-  }
-  return loaded;
 }
 
 absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const Principal& caller,

@@ -77,9 +77,7 @@ absl::Status answer_without_session(Backend& backend, const SimulationRecord& re
   return absl::OkStatus();
 }
 
-using Act = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
-
-void wake_and_act(Backend& backend, const std::string& id, const RequestKey& key, const Act& act,
+void wake_and_act(Backend& backend, const std::string& id, const RequestKey& key, const SimulationService::Act& act,
                   const Unwanted& unwanted, const Session::Reply& reply) {
   absl::StatusOr<std::shared_ptr<Session>> session = nullptr;
   const absl::Status woken = guarded_if_wanted(unwanted, [&] {

@@ -15,6 +15,7 @@ class SimulationService : public v1::SimulationService::CallbackService {
 
   using Context = grpc::CallbackServerContext;
   using Reactor = grpc::ServerUnaryReactor;
+  using Act = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
 
   Reactor* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                             v1::Simulation* response) override;
@@ -50,7 +51,6 @@ class SimulationService : public v1::SimulationService::CallbackService {
  private:
   /// Adds to an answer what the store does not hold.
   using Amend = std::function<void(v1::Simulation& simulation)>;
-  using Act = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
   /// Has the session act and answers with the simulation as it is then; FAILED_PRECONDITION when it has ended, unless
   /// an equal request was carried out before that.
   template <typename Request>

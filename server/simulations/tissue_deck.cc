@@ -8,7 +8,7 @@
 #include "core/export/calculix_deck.h"
 #include "server/backend/result_reading.h"
 #include "server/entry/unary.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/record_names.h"
 #include "server/wire/names.h"
 #include "server/wire/simulation_conversion.h"
 

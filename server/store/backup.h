@@ -27,7 +27,7 @@ using BackupProgress = std::function<void(const BackupReport& so_far)>;
 /// SHA256SUMS is what `sha256sum -c` takes. Everything is on the medium when this returns; a target that is not
 /// complete is called <target>.partial. The daemon's writes wait for some milliseconds, while links to the files are
 /// made. FAILED_PRECONDITION for a source without a database or a target that exists; RESOURCE_EXHAUSTED when there is
-/// no room. Checked by tests/unit/server/backup_test.cc and tests/integration/service/backup_test.cc.
+/// no room. Checked by tests/unit/server/store/backup_test.cc and tests/integration/service/backup_test.cc.
 absl::StatusOr<BackupReport> back_up_store(const std::filesystem::path& data, const std::filesystem::path& target,
                                            const BackupProgress& progress);
 

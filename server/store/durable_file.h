@@ -19,7 +19,7 @@ absl::Status file_error(const std::string& what, int error_number);
 
 /// Writes a file whole or not at all, also when the machine dies: beside its place, to the medium, then into its place.
 /// Its directory is made when it is missing. Errors as file_error() gives them; nothing is left behind then.
-/// Checked by tests/unit/server/checkpoint_files_test.cc.
+/// Checked by tests/unit/server/store/checkpoint_files_test.cc.
 absl::Status write_durably(const std::filesystem::path& path, std::string_view bytes);
 
 /// Waits until what was written to a file, or which entries a directory has, is on the medium.

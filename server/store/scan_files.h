@@ -12,7 +12,7 @@
 namespace lipofill::server {
 
 /// The bytes of uploaded scans, a file each: <root>/<patient>/<scan>. Ids are checked by whoever calls: they hold no
-/// separators. Checked by tests/unit/server/scan_files_test.cc.
+/// separators. Checked by tests/unit/server/store/scan_files_test.cc.
 class ScanFiles {
  public:
   static absl::StatusOr<ScanFiles> open(const std::filesystem::path& root);

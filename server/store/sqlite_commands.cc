@@ -1,6 +1,7 @@
 #include <optional>
 
 #include "absl/strings/str_cat.h"
+#include "server/store/record_names.h"
 #include "server/store/sqlite_store.h"
 
 namespace lipofill::server {

@@ -1,4 +1,5 @@
 #include "absl/strings/str_cat.h"
+#include "server/store/record_names.h"
 #include "server/store/scope_query.h"
 #include "server/store/sqlite_store.h"
 

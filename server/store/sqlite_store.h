@@ -125,11 +125,4 @@ class SqliteStore : public Store {
   std::unique_ptr<Database> database_;
 };
 
-/// Names as on the wire; requests remember them.
-std::string patient_name(const std::string& patient);
-std::string scan_name(const std::string& patient, const std::string& scan);
-std::string model_name(const std::string& patient, const std::string& model);
-std::string simulation_name(const std::string& simulation);
-std::string checkpoint_name(const std::string& simulation, const std::string& checkpoint);
-
 }  // namespace lipofill::server

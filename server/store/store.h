@@ -16,7 +16,7 @@ namespace lipofill::server {
 ///
 /// Errors: NOT_FOUND and ALREADY_EXISTS naming the resource, FAILED_PRECONDITION, INVALID_ARGUMENT for a request id
 /// that was used for another request, DATA_LOSS and UNAVAILABLE from the medium. Checked by
-/// tests/unit/server/store_test.cc.
+/// tests/unit/server/store/store_test.cc.
 class Store {
  public:
   virtual ~Store() = default;

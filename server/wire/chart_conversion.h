@@ -12,7 +12,7 @@ namespace lipofill::server {
 
 /// Reads a message into SI values of the core, noting what is missing under the path of the field. Ranges are the
 /// core's business; numbers that are not finite and unknown enumerators have been refused before (message_check.h).
-/// Checked by tests/unit/server/conversion_test.cc.
+/// Checked by tests/unit/server/wire/conversion_test.cc.
 class FieldReader {
  public:
   FieldReader(std::string path, FieldViolations& violations) : path_(std::move(path)), violations_(violations) {}

@@ -12,7 +12,7 @@ namespace lipofill::server {
 
 /// Checks a mask. INVALID_ARGUMENT with a violation of `field` for every path that is no field of
 /// the message type. An empty mask is good, so is the one path "*": both mean everything. Checked
-/// by tests/unit/server/field_mask_test.cc.
+/// by tests/unit/server/wire/field_mask_test.cc.
 absl::Status check_field_mask(const google::protobuf::FieldMask& mask, const google::protobuf::Descriptor& type,
                               const std::string& field);
 

@@ -11,7 +11,7 @@ namespace lipofill::server {
 /// and states how far a decoded value may be from the one it stands for: half a step of the widest component, and the
 /// rounding of the result to float32. The ends of the box are exact, so that a field of zeros and ones stays one. An
 /// array with a value that is not finite, or of another type, stays as it is.
-/// Checked by tests/unit/server/field_quantisation_test.cc.
+/// Checked by tests/unit/server/wire/field_quantisation_test.cc.
 void quantise(v1::ArraySlice& array);
 
 }  // namespace lipofill::server

@@ -19,7 +19,7 @@ struct CheckpointParts {
 };
 
 /// Takes resource names apart. INVALID_ARGUMENT for `field` saying what the name should look like.
-/// Checked by tests/unit/server/names_test.cc.
+/// Checked by tests/unit/server/wire/names_test.cc.
 absl::StatusOr<std::string> parse_patient_name(const std::string& name, const std::string& field);
 absl::StatusOr<PatientChild> parse_scan_name(const std::string& name, const std::string& field);
 absl::StatusOr<PatientChild> parse_model_name(const std::string& name, const std::string& field);

@@ -19,7 +19,7 @@ struct ResourceNames {
 
 /// Every text that begins as the name of a resource does counts, whatever field it is in: a new field, or a new method,
 /// is covered before anybody thinks of it. What is no proper name is left to the method, which refuses it.
-/// Checked by tests/unit/server/resource_names_test.cc.
+/// Checked by tests/unit/server/wire/resource_names_test.cc.
 ResourceNames resource_names_in(const google::protobuf::Message& message);
 
 }  // namespace lipofill::server

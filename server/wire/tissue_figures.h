@@ -13,7 +13,7 @@ std::optional<anatomy::TissueKind> kind_of(const v1::TissueLayer& layer);
 
 /// The specification with what its preset of tissue fills in; as it is without a preset. Layers of no known kind stay
 /// as they are, and so does every figure that is given. Doing it twice is doing it once. Checked by
-/// tests/unit/server/tissue_figures_test.cc.
+/// tests/unit/server/wire/tissue_figures_test.cc.
 v1::ModelSpec fill_tissue_figures(v1::ModelSpec spec);
 
 /// Explains which figure a layer leaves out.

@@ -13,7 +13,7 @@
 #include "lipofill/v1/simulation_service.pb.h"
 #include "tests/integration/security/caller.h"
 #include "tests/integration/service/daemon_process.h"
-#include "tests/unit/security/key_fixture.h"
+#include "tests/unit/server/security/key_fixture.h"
 #include "tests/unit/server/temporary_directory.h"
 
 namespace lipofill::testing {

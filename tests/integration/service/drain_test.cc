@@ -5,7 +5,7 @@
 
 #include "grpc/health/v1/health.grpc.pb.h"
 #include "tests/integration/service/service_fixture.h"
-#include "tests/unit/server/notify_socket.h"
+#include "tests/unit/server/ops/notify_socket.h"
 
 namespace lipofill::testing {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <thread>
 
-#include "tests/unit/server/session_fixture.h"
+#include "tests/unit/server/sessions/session_fixture.h"
 
 namespace lipofill::server {
 namespace {

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "core/base/error_hints.h"
-#include "tests/unit/server/session_fixture.h"
+#include "tests/unit/server/sessions/session_fixture.h"
 
 namespace lipofill::server {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "server/ops/drain_guard.h"
 #include "server/ops/logging.h"
-#include "tests/unit/server/notify_socket.h"
+#include "tests/unit/server/ops/notify_socket.h"
 #include "tests/unit/server/temporary_directory.h"
 
 namespace lipofill::server {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/security/key_fixture.h"
+#include "tests/unit/server/security/key_fixture.h"
 
 namespace lipofill::server {
 namespace {

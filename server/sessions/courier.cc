@@ -1,4 +1,4 @@
-#include "server/frames/courier.h"
+#include "server/sessions/courier.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "server/entry/size_limits.h"
+#include "server/backend/size_limits.h"
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"

@@ -8,7 +8,7 @@
 #include "core/base/error_hints.h"
 #include "core/base/field_violations.h"
 #include "server/security/allowance.h"
-#include "tests/unit/security/key_fixture.h"
+#include "tests/unit/server/security/key_fixture.h"
 #include "tests/unit/server/temporary_directory.h"
 
 namespace lipofill::server {

@@ -12,7 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "core/base/error_hints.h"
-#include "tests/unit/security/key_fixture.h"
+#include "tests/unit/server/security/key_fixture.h"
 #include "tests/unit/server/temporary_directory.h"
 
 namespace lipofill::server {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/server/viewer_frames.h"
+#include "tests/unit/server/sessions/viewer_frames.h"
 
 namespace lipofill::server {
 namespace {

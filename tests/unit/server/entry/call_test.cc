@@ -61,12 +61,12 @@ TEST(MethodRules, KnowEveryMethodOfEveryService) {
     const auto* service = file->service(0);
     for (int i = 0; i < service->method_count(); ++i) {
       const std::string method = "/" + service->full_name() + "/" + service->method(i)->name();
-      EXPECT_TRUE(has_rule(method)) << method << " is not in server/entry/method_rules.cc";
+      ASSERT_TRUE(has_rule(method)) << method << " is not in server/entry/method_rules.cc";
       const std::string& name = service->method(i)->name();
-      EXPECT_FALSE(rule_of(method) == nullptr || rule_of(method)->is_open || rule_of(method)->least < Role::kViewer)
-          << method << " must ask who calls";
-      EXPECT_TRUE(name.rfind("Get", 0) != 0 || effect_of(method) == Effect::kNone) << method;
-      EXPECT_TRUE(name.rfind("Create", 0) != 0 || effect_of(method) == Effect::kBegins) << method;
+      const MethodRule& rule = *rule_of(method);
+      EXPECT_FALSE(rule.is_open || rule.least < Role::kViewer) << method << " must ask who calls";
+      EXPECT_TRUE(name.rfind("Get", 0) != 0 || rule.effect == Effect::kNone) << method;
+      EXPECT_TRUE(name.rfind("Create", 0) != 0 || rule.effect == Effect::kBegins) << method;
     }
   }
   EXPECT_TRUE(has_rule("/grpc.health.v1.Health/Check"));

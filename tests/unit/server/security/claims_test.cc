@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error_hints.h"
-#include "tests/unit/security/key_fixture.h"
+#include "tests/unit/server/security/key_fixture.h"
 
 namespace lipofill::server {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/server/session_fixture.h"
+#include "tests/unit/server/sessions/session_fixture.h"
 
 namespace lipofill::server {
 namespace {

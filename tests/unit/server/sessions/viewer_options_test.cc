@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/base/field_violations.h"
-#include "tests/unit/server/viewer_frames.h"
+#include "tests/unit/server/sessions/viewer_frames.h"
 
 namespace lipofill::server {
 namespace {

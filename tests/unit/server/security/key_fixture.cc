@@ -1,4 +1,4 @@
-#include "tests/unit/security/key_fixture.h"
+#include "tests/unit/server/security/key_fixture.h"
 
 #include <openssl/bn.h>
 #include <openssl/core_names.h>

@@ -1,4 +1,4 @@
-# Debian 12 packages; deploy/setup installs them. README.md lists their licences.
+# Debian 12 packages; deploy/setup installs them. core/doc/licences.md lists their licences.
 
 find_package(Threads REQUIRED)
 find_package(absl REQUIRED)

@@ -17,7 +17,10 @@ import sys
 
 ROOT = "Simulation::advance_step"
 WIDTH, ROW, LEAST_WIDTH = 1200, 17, 1.5
-COLOURS = {"geometry": "#b4a7d6", "solid": "#d98c5f", "film": "#6fa8dc", "coupling": "#93c47d", "simulation": "#c9b458", "other": "#b7b7b7"}
+COLOURS = {
+    "geometry": "#b4a7d6", "solid": "#d98c5f", "film": "#6fa8dc", "coupling": "#93c47d", "mechanics": "#e0a3a3",
+    "step": "#c9b458", "simulation": "#a8a05a", "other": "#b7b7b7",
+}
 
 
 def without_brackets(name, opening, closing):
@@ -39,7 +42,7 @@ def short_name(symbol):
 
 
 def part_of(symbol):
-    match = re.match(r"(?:void )?lipofill::(geometry|solid|film|coupling|simulation)::", symbol)
+    match = re.match(r"(?:void )?lipofill::(geometry|solid|film|coupling|mechanics|step|simulation)::", symbol)
     return match.group(1) if match else "other"
 
 

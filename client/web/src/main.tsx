@@ -1,5 +1,5 @@
 import { render } from "preact";
-import { App } from "./ui/app";
-import "./ui/style.css";
+import { App } from "./app";
+import "./style.css";
 
 render(<App />, document.getElementById("page")!);

@@ -9,7 +9,7 @@ namespace {
 
 using grpc::StatusCode;
 
-/// The least role that may call each method, as README.md has it.
+/// The least role that may call each method, as core/doc/security.md has it.
 const std::map<std::string, std::string>& expected_roles() {
   static const std::map<std::string, std::string> roles = [] {
     std::map<std::string, std::string> all;
@@ -55,7 +55,7 @@ TEST_F(RolesTest, EveryMethodIsThoughtOf) {
   EXPECT_GE(methods_.size(), expected_roles().size()) << "reflection is open to everybody";
   for (const std::string& method : methods_) {
     EXPECT_EQ(expected_roles().count(method), 1u)
-        << method << " is new: say in this test, in README.md and in server/entry/method_rules.cc who may call it";
+        << method << " is new: say in this test, in core/doc/security.md and in server/entry/method_rules.cc who may call it";
   }
 }
 

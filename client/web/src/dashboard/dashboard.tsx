@@ -6,7 +6,7 @@ import { simulations } from "../api/client";
 import { toProblem } from "../api/errors";
 import { stateClass, stateWord } from "../run/exports";
 import { openExisting } from "../run/run";
-import { step } from "../ui/stage_state";
+import { step } from "../stage/stage_state";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { Thumbnails } from "./thumbnails";
 

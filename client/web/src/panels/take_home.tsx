@@ -6,8 +6,8 @@ import { writePlan } from "../plan/plan_file";
 import { attempt, canRun, plan, scanFile, tell } from "../plan/state";
 import { save, seriesCsv, stateWord, surfaceObj } from "../run/exports";
 import { hasResult, openExisting, rows, simulation } from "../run/run";
-import { FileButton, Section, SelectField } from "./fields";
-import { shownScene } from "./stage_state";
+import { FileButton, Section, SelectField } from "../widgets/fields";
+import { shownScene } from "../stage/stage_state";
 
 export function Exports() {
   const name = plan.value.name || "plan";

@@ -2,7 +2,7 @@
 import { readable } from "../plan/anatomy";
 import { lookAt, rows, simulation, timeShown } from "../run/run";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
-import { Plot } from "./plot";
+import { Plot } from "../widgets/plot";
 
 function Figure({
   label,

@@ -5,7 +5,7 @@ import { ligamentNames, readable } from "../plan/anatomy";
 import { freeName, newFilm, newInjection } from "../plan/new_plan";
 import { editPlan, modelIsCurrent, plan, region, zones } from "../plan/state";
 import { tool } from "../plan/tools";
-import { CheckField, Complaint, NumberField, Section, SelectField } from "./fields";
+import { CheckField, Complaint, NumberField, Section, SelectField } from "../widgets/fields";
 import { FilmEditor } from "./zone_list";
 
 function Planes() {

@@ -7,7 +7,7 @@ import { build } from "../plan/actions";
 import { freeName, resolutions, setResolution } from "../plan/new_plan";
 import { busy, editPlan, model, modelIsCurrent, plan, region, scan } from "../plan/state";
 import { tool } from "../plan/tools";
-import { CheckField, Complaint, NumberField, Section, Segmented, SelectField } from "./fields";
+import { CheckField, Complaint, NumberField, Section, Segmented, SelectField } from "../widgets/fields";
 
 const side = signal<Side>("left");
 const chosen = signal("jaw");

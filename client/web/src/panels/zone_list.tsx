@@ -6,7 +6,7 @@ import { freeName, newZone } from "../plan/new_plan";
 import { chart, editPlan, plan, region, zones } from "../plan/state";
 import { skinPointAt, tool } from "../plan/tools";
 import { cssOf, zoneColours } from "../scene/colour_maps";
-import { Complaint, NumberField, SelectField, TextField } from "./fields";
+import { Complaint, NumberField, SelectField, TextField } from "../widgets/fields";
 
 const shapeWord: Record<string, string> = { region: "by landmarks", painted: "painted", disc: "disc", box: "box" };
 

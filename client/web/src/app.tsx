@@ -1,10 +1,10 @@
 // The frame around planner and dashboard.
 import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { setToken, token } from "../api/client";
-import { Dashboard } from "../dashboard/dashboard";
-import { openSample } from "../plan/actions";
-import { notice, plan } from "../plan/state";
+import { setToken, token } from "./api/client";
+import { Dashboard } from "./dashboard/dashboard";
+import { openSample } from "./plan/actions";
+import { notice, plan } from "./plan/state";
 import { Planner } from "./planner";
 
 const page = signal(location.hash);

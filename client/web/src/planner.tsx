@@ -1,19 +1,19 @@
 // The planner: four steps beside the picture.
 import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { busy, modelIsCurrent, problem, scan, violations, zones } from "../plan/state";
-import { tool } from "../plan/tools";
-import { connection, hasResult, simulation } from "../run/run";
-import { FacePanel } from "./face_panel";
-import { FatPanel } from "./fat_panel";
-import { Figures } from "./figures";
+import { busy, modelIsCurrent, problem, scan, violations, zones } from "./plan/state";
+import { tool } from "./plan/tools";
+import { connection, hasResult, simulation } from "./run/run";
+import { FacePanel } from "./panels/face_panel";
+import { FatPanel } from "./panels/fat_panel";
+import { Figures } from "./panels/figures";
 import { onKey } from "./keyboard";
-import { RunPanel } from "./run_panel";
-import { Stage } from "./stage";
-import { distance, quantity, step, type Step } from "./stage_state";
-import { Timeline } from "./timeline";
-import { TissuePanel } from "./tissue_panel";
-import { bindZonePreview } from "./zone_preview";
+import { RunPanel } from "./panels/run_panel";
+import { Stage } from "./stage/stage";
+import { distance, quantity, step, type Step } from "./stage/stage_state";
+import { Timeline } from "./stage/timeline";
+import { TissuePanel } from "./panels/tissue_panel";
+import { bindZonePreview } from "./stage/zone_preview";
 
 const steps: { key: Step; label: string; done: () => boolean }[] = [
   { key: "face", label: "Face", done: () => scan.value !== undefined },

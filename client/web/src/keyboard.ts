@@ -1,7 +1,7 @@
 // Keys: 1 to 4 the steps, space run or pause, arrows through time, Esc out of a tool.
-import { frame, hasResult, lookAt, runOrPause, store } from "../run/run";
-import { brushMm, tool } from "../plan/tools";
-import { compare, quantity, step, type Step } from "./stage_state";
+import { frame, hasResult, lookAt, runOrPause, store } from "./run/run";
+import { brushMm, tool } from "./plan/tools";
+import { compare, quantity, step, type Step } from "./stage/stage_state";
 
 const steps: Step[] = ["face", "tissue", "fat", "run"];
 

@@ -8,7 +8,7 @@ import { zoneColours, type Rgb } from "../scene/colour_maps";
 import type { FaceScene } from "../scene/face_scene";
 import type { Ball, Line } from "../scene/markers";
 import { distanceOf, type Point } from "../scene/surface_geometry";
-import { layerShown, showLayers } from "./tissue_panel";
+import { layerShown, showLayers } from "../panels/tissue_panel";
 import { distance, quantity, step } from "./stage_state";
 import { lookAtFace, lookAtLift, lookAtRegion } from "./view_tools";
 import { zonePreview } from "./zone_preview";

@@ -22,8 +22,8 @@ import {
   simulation,
   state,
 } from "../run/run";
-import { FileButton, NumberField, Section, SelectField } from "./fields";
-import { distance, quantity } from "./stage_state";
+import { FileButton, NumberField, Section, SelectField } from "../widgets/fields";
+import { distance, quantity } from "../stage/stage_state";
 import { Exports, Recorded } from "./take_home";
 
 const more = signal({ zone: "", volumeMl: 0.5 as number | undefined, rateMlPerS: 1 as number | undefined });

@@ -4,7 +4,7 @@ import { chart, modelMeshes, plan, region } from "../plan/state";
 import { hasFrame, hasResult, runAxes } from "../run/run";
 import { faceView, regionView, type View } from "../scene/views";
 import { compare, distance, quantity, shownScene, step, type Compare } from "./stage_state";
-import { Segmented } from "./fields";
+import { Segmented } from "../widgets/fields";
 import type { Quantity } from "../scene/colour_maps";
 
 function look(view: View): void {

@@ -11,7 +11,7 @@ import { parsePlan } from "../plan/plan_file";
 import { editPlan, patient, plan, region, scan, tell } from "../plan/state";
 import { tool } from "../plan/tools";
 import { save } from "../run/exports";
-import { FileButton, Section, SelectField, TextField } from "./fields";
+import { FileButton, Section, SelectField, TextField } from "../widgets/fields";
 
 const known = signal<Patient[]>([]);
 const scansOf = signal<Scan[]>([]);

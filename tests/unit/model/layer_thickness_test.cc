@@ -50,7 +50,7 @@ std::vector<std::string> refused_fields(const model::FaceModelSpec& spec) {
   return fields;
 }
 
-TEST(model::LayerThickness, TheDeepFaceOfALayerDownToTheBoneLiesOnTheBone) {
+TEST(LayerThickness, TheDeepFaceOfALayerDownToTheBoneLiesOnTheBone) {
   const auto model = model::build_face_model(make_spherical_head(), nullptr);
   ASSERT_TRUE(model.ok()) << model.status();
   const geometry::LayeredGrid& grid = (*model)->geometry.grid;
@@ -70,7 +70,7 @@ TEST(model::LayerThickness, TheDeepFaceOfALayerDownToTheBoneLiesOnTheBone) {
   EXPECT_NEAR((*model)->layers[1].geometry.thickness.maximum(), (*model)->thickness[1].max, 1e-15);
 }
 
-TEST(model::LayerThickness, BoneDeeperThanTheBoundEndsTheLayerAboveIt) {
+TEST(LayerThickness, BoneDeeperThanTheBoundEndsTheLayerAboveIt) {
   model::FaceModelSpec spec = make_spherical_head();
   spec.layers[1].down_to_bone->max_thickness = 8e-3;
   const auto model = model::build_face_model(spec, nullptr);
@@ -81,7 +81,7 @@ TEST(model::LayerThickness, BoneDeeperThanTheBoundEndsTheLayerAboveIt) {
   EXPECT_LT((*model)->bone->limited_share, 1.0);
 }
 
-TEST(model::LayerThickness, LayersThatLeaveTooLittleAreRefusedWithPlaceAndFigures) {
+TEST(LayerThickness, LayersThatLeaveTooLittleAreRefusedWithPlaceAndFigures) {
   model::FaceModelSpec spec = make_spherical_head();
   spec.layers[0].geometry.thickness = geometry::ScalarField::constant(9.5e-3);
   const auto model = model::build_face_model(spec, nullptr);
@@ -89,7 +89,7 @@ TEST(model::LayerThickness, LayersThatLeaveTooLittleAreRefusedWithPlaceAndFigure
   EXPECT_THAT(std::string(model.status().message()), HasSubstr("the other layers take 9.50 mm"));
 }
 
-TEST(model::LayerThickness, WhatCannotBeAskedForIsRefusedBeforeTheScanIsReadOver) {
+TEST(LayerThickness, WhatCannotBeAskedForIsRefusedBeforeTheScanIsReadOver) {
   model::FaceModelSpec no_bone = make_spherical_head();
   no_bone.bone.reset();
   EXPECT_THAT(refused_fields(no_bone), ElementsAre("layers[1].down_to_bone"));
@@ -119,7 +119,7 @@ TEST(model::LayerThickness, WhatCannotBeAskedForIsRefusedBeforeTheScanIsReadOver
   EXPECT_THAT(refused_fields(regional), ElementsAre("layers[1].regional_thickness"));
 }
 
-TEST(model::LayerThickness, ASquareHasNeitherBoneNorRegions) {
+TEST(LayerThickness, ASquareHasNeitherBoneNorRegions) {
   model::FaceModelSpec spec = make_small_model_spec();
   spec.layers[0].kind = anatomy::TissueKind::kSkin;
   spec.layers[0].regional_thickness = true;
@@ -127,7 +127,7 @@ TEST(model::LayerThickness, ASquareHasNeitherBoneNorRegions) {
   EXPECT_THAT(refused_fields(spec), ElementsAre("layers[0].regional_thickness", "layers[1].down_to_bone"));
 }
 
-TEST(model::LayerThickness, PlainLayersAreLaidAsTheirFieldsSay) {
+TEST(LayerThickness, PlainLayersAreLaidAsTheirFieldsSay) {
   model::FaceModelSpec spec = make_small_model_spec();
   spec.layers[1].geometry.thickness = {2, 1, {6e-3, 8e-3}};
   const auto model = model::build_face_model(spec, nullptr);
@@ -145,7 +145,7 @@ TEST(model::LayerThickness, PlainLayersAreLaidAsTheirFieldsSay) {
   EXPECT_EQ((*model)->geometry.grid.nodes, geometry->grid.nodes);
 }
 
-TEST(model::FaceModel, PrestressIsBoundedAndPartOfTheContentHash) {
+TEST(FaceModel, PrestressIsBoundedAndPartOfTheContentHash) {
   model::FaceModelSpec spec = make_small_model_spec();
   const std::string without = (*model::build_face_model(spec, nullptr))->content_hash;
   spec.layers[0].material.prestress = 20e3;
@@ -160,7 +160,7 @@ TEST(model::FaceModel, PrestressIsBoundedAndPartOfTheContentHash) {
   }
 }
 
-TEST(model::FaceModel, BuildingStopsWhenAsked) {
+TEST(FaceModel, BuildingStopsWhenAsked) {
   const model::FaceModelSpec spec = make_spherical_head();
   const auto never = model::build_face_model(spec, [](double, const char*) { return false; });
   EXPECT_EQ(never.status().code(), absl::StatusCode::kCancelled);

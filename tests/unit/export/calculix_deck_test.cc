@@ -102,7 +102,7 @@ Deck write_deck(const model::FaceModel& model, const plan::SimulationSpec& spec,
   return Deck(deck.ok() ? read_all(*deck) : "");
 }
 
-TEST(exporting::CalculixDeck, HasEveryNodeAndElementOfTheSplitMesh) {
+TEST(CalculixDeck, HasEveryNodeAndElementOfTheSplitMesh) {
   const auto model = make_small_model();
   const Deck deck = write_deck(*model, make_small_plan(), constant_pressure(36, 500.0));
   // Three levels of 13 x 13 nodes; those of the film's level are there twice, on the rim too.
@@ -121,7 +121,7 @@ TEST(exporting::CalculixDeck, HasEveryNodeAndElementOfTheSplitMesh) {
   EXPECT_TRUE(deck.all("*SPRING").empty());
 }
 
-TEST(exporting::CalculixDeck, ElementsHaveAPositiveJacobianInTheOrderWritten) {
+TEST(CalculixDeck, ElementsHaveAPositiveJacobianInTheOrderWritten) {
   model::FaceModelSpec spec = make_small_model_spec();
   spec.layers[1].geometry.elements_through = 3;
   const auto model = model::build_face_model(spec, nullptr);
@@ -149,7 +149,7 @@ TEST(exporting::CalculixDeck, ElementsHaveAPositiveJacobianInTheOrderWritten) {
   EXPECT_NEAR(volume, 48.0 * 48.0 * 10.0, 1e-6 * 48.0 * 48.0 * 10.0);
 }
 
-TEST(exporting::CalculixDeck, PressesBothWallsApart) {
+TEST(CalculixDeck, PressesBothWallsApart) {
   const auto model = make_small_model();
   plan::SimulationSpec plan = make_small_plan();
   plan.films[0].zones = {{"half", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}}};
@@ -173,7 +173,7 @@ TEST(exporting::CalculixDeck, PressesBothWallsApart) {
   EXPECT_EQ(surfaces[1].lines.front().at(1), "S2");
 }
 
-TEST(exporting::CalculixDeck, AFilmOnBonePressesOneWallAndLeavesBoneOut) {
+TEST(CalculixDeck, AFilmOnBonePressesOneWallAndLeavesBoneOut) {
   const auto model = make_small_model();
   plan::SimulationSpec plan = make_small_plan();
   plan.films[0].below_layer = "muscle";
@@ -185,7 +185,7 @@ TEST(exporting::CalculixDeck, AFilmOnBonePressesOneWallAndLeavesBoneOut) {
   for (const int node : deck.set("BONE")) EXPECT_EQ(std::count(fixed.begin(), fixed.end(), node), 0);
 }
 
-TEST(exporting::CalculixDeck, HoldsRollersAndElasticSupports) {
+TEST(CalculixDeck, HoldsRollersAndElasticSupports) {
   model::FaceModelSpec spec = make_small_model_spec();
   spec.rim.kind = model::SupportKind::kRollers;
   spec.base = {model::SupportKind::kElastic, 2e6};
@@ -211,7 +211,7 @@ TEST(exporting::CalculixDeck, HoldsRollersAndElasticSupports) {
   EXPECT_NEAR(total[2], 2e-3 * 44.0 * 48.0, 1e-9);
 }
 
-TEST(exporting::CalculixDeck, MaterialAndGravityAreInMillimetresNewtonAndTonne) {
+TEST(CalculixDeck, MaterialAndGravityAreInMillimetresNewtonAndTonne) {
   const auto model = make_small_model();
   plan::SimulationSpec plan = make_small_plan();
   plan.gravity = {0.0, 0.0, -9.81};
@@ -229,7 +229,7 @@ TEST(exporting::CalculixDeck, MaterialAndGravityAreInMillimetresNewtonAndTonne) 
   EXPECT_DOUBLE_EQ(std::stod(gravity.lines[0][5]), -1.0);
 }
 
-TEST(exporting::CalculixDeck, ReadsTheSameInPiecesOfAnySize) {
+TEST(CalculixDeck, ReadsTheSameInPiecesOfAnySize) {
   const auto model = make_small_model();
   const auto pressures = constant_pressure(36, 500.0);
   auto whole = exporting::CalculixDeck::create(*model, make_small_plan(), pressures);
@@ -238,7 +238,7 @@ TEST(exporting::CalculixDeck, ReadsTheSameInPiecesOfAnySize) {
   EXPECT_EQ(read_all(*whole, size_t{64} << 20), read_all(*pieces, exporting::CalculixDeck::kLongestLine));
 }
 
-TEST(exporting::CalculixDeck, NamesOfThePlanCannotBreakTheText) {
+TEST(CalculixDeck, NamesOfThePlanCannotBreakTheText) {
   model::FaceModelSpec spec = make_small_model_spec();
   spec.layers[0].name = "skin, \n*STEP " + std::string(300, 'x');
   spec.layers[1].name = "skin, \n*STEP " + std::string(300, 'x') + "y";
@@ -254,7 +254,7 @@ TEST(exporting::CalculixDeck, NamesOfThePlanCannotBreakTheText) {
   EXPECT_LT(elements[0].head.size(), 80u);
 }
 
-TEST(exporting::CalculixDeck, TakesThePressureOfARunningSimulation) {
+TEST(CalculixDeck, TakesThePressureOfARunningSimulation) {
   const auto simulation = make_small_simulation();
   ASSERT_TRUE(simulation);
   for (int step = 0; step < 20; ++step) simulation->advance_step();
@@ -267,7 +267,7 @@ TEST(exporting::CalculixDeck, TakesThePressureOfARunningSimulation) {
   EXPECT_NEAR(highest, simulation->report().max_pressure * 1e-6, 1e-6 * highest);
 }
 
-TEST(exporting::CalculixDeck, NamesTheForcesItLeavesOut) {
+TEST(CalculixDeck, NamesTheForcesItLeavesOut) {
   const auto head_of = [](const model::FaceModelSpec& spec, const plan::SimulationSpec& plan) {
     const auto model = model::build_face_model(spec, nullptr);
     EXPECT_TRUE(model.ok()) << model.status();
@@ -286,7 +286,7 @@ TEST(exporting::CalculixDeck, NamesTheForcesItLeavesOut) {
                                                         "prestress of the layer SKIN\n"));
 }
 
-TEST(exporting::CalculixDeck, RefusesWhatIsNoTissueOrNoPressure) {
+TEST(CalculixDeck, RefusesWhatIsNoTissueOrNoPressure) {
   model::FaceModelSpec bare;
   bare.region = geometry::SquareSpec{0.04, 0.04};
   bare.n_xi = bare.n_eta = 4;
@@ -303,7 +303,7 @@ TEST(exporting::CalculixDeck, RefusesWhatIsNoTissueOrNoPressure) {
   }
 }
 
-TEST(exporting::WallPressure, IsThatOfTheCellsByTheShareTheyCover) {
+TEST(WallPressure, IsThatOfTheCellsByTheShareTheyCover) {
   geometry::LayeredGrid tissue;
   tissue.n_xi = 4;
   tissue.n_eta = 2;

@@ -28,7 +28,7 @@ void expect_sizes(const model::FaceModel& model, size_t tissues, size_t gaps, si
   EXPECT_EQ(model.shared->analyses.size(), analyses);
 }
 
-TEST(model::SharedParts, AreOneForEqualZonesAndGoWithTheLastSimulation) {
+TEST(SharedParts, AreOneForEqualZonesAndGoWithTheLastSimulation) {
   const auto model = make_small_model();
   const plan::SimulationSpec spec = make_small_plan();
   Pointer a = create(model, spec);
@@ -43,7 +43,7 @@ TEST(model::SharedParts, AreOneForEqualZonesAndGoWithTheLastSimulation) {
   expect_sizes(*model, 0, 0, 0);
 }
 
-TEST(model::SharedParts, AreApartWhereThePlanMakesThemSo) {
+TEST(SharedParts, AreApartWhereThePlanMakesThemSo) {
   const auto model = make_small_model();
   const plan::SimulationSpec spec = make_small_plan();
   const Pointer a = create(model, spec);
@@ -57,7 +57,7 @@ TEST(model::SharedParts, AreApartWhereThePlanMakesThemSo) {
   expect_sizes(*model, 2, 3, 3);
 }
 
-TEST(model::SharedParts, ChangeNoBit) {
+TEST(SharedParts, ChangeNoBit) {
   const plan::SimulationSpec spec = make_small_plan();
   const std::string alone = hash_after(*create(make_small_model(), spec), 12);
   const auto model = make_small_model();

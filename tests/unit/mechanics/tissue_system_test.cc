@@ -47,8 +47,8 @@ TEST(TissueSystem, AssemblingGivesTheSameForcesAsForcesAlone) {
 
 TEST(TissueSystem, AZoneThatNoFreeNodeOpensIsRefused) {
   SmallSystem c;
-  c.spec.films[0].zones = {{"thin", geometry::ChartBox{0.4, 0.45, 0.4, 0.45}}};
-  c.spec.films[0].n_xi = c.spec.films[0].n_eta = 20;
+  c.spec.films[0].zones = {{"thin", geometry::ChartBox{0.2, 0.4, 0.2, 0.4}}};
+  c.spec.films[0].n_xi = c.spec.films[0].n_eta = 5;
   const auto film = plan::place_film(*c.model, c.spec.films[0]);
   ASSERT_TRUE(film.ok()) << film.status();
   const std::vector<plan::FilmLayout> films{*film};

@@ -45,7 +45,7 @@ TEST(ResidualForce, ABodyThatKeepsItsVelocityHasNoInertia) {
   const double alpha = c.system->tissue().damping().alpha;
   ResidualForce forces(*c.system, Eigen::Vector3d::Zero());
   auto state = c.state_at(c.system->rest_positions());
-  const Eigen::Vector3d velocity(1e-6, 2e-6, -1e-6);
+  const Eigen::Vector3d velocity(1e-3, 2e-3, -1e-3);
   state.velocities.colwise() = velocity;
   const Eigen::Matrix3Xd x = state.positions + kStep * state.velocities;
   c.system->bring_forces_to(state.positions, c.springs, kStep);

@@ -62,8 +62,12 @@ void keep_algebra_on_this_thread() {
   static_cast<void>(once);
 }
 
-std::string algebra_kernels() { return openblas_get_corename(); }
+std::string algebra_kernels() {
+  return openblas_get_corename();
+}
 
-bool has_pinned_kernels() { return tried_to_pin && algebra_kernels() == kPinnedKernels; }
+bool has_pinned_kernels() {
+  return tried_to_pin && algebra_kernels() == kPinnedKernels;
+}
 
 }  // namespace lipofill::coupling

@@ -10,9 +10,9 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "core/mechanics/step_cost.h"
 #include "core/model/face_model.h"
 #include "core/plan/simulation_spec.h"
-#include "core/mechanics/step_cost.h"
 
 namespace lipofill::simulation {
 
@@ -67,7 +67,7 @@ struct StepReport {
   double ligament_tension = 0.0;  ///< sum over all ligaments [N]
   int broken_ligament_points = 0;
   int closed_cells = 0;                 ///< cells that fat has not entered
-  mechanics::StepCost cost;                  ///< of the step, tries that were taken back included
+  mechanics::StepCost cost;             ///< of the step, tries that were taken back included
   std::vector<double> probe_thickness;  ///< [m]
   std::vector<double> probe_pressure;   ///< [Pa]
 };

@@ -49,7 +49,7 @@ struct SessionView {
   int n_dofs = 0;
   double wall_s = 0.0;          ///< spent RUNNING, but for the preview
   double step_ms_median = 0.0;  ///< computing time of a step
-  mechanics::CostSum cost;           ///< of the steps taken in this daemon
+  mechanics::CostSum cost;      ///< of the steps taken in this daemon
   std::string state_hash;       ///< empty in a cached view of a live simulation
   size_t queue_position = 0;    ///< while it waits to run: 1 is the next
   std::optional<PreviewView> preview;

@@ -25,7 +25,8 @@ std::string hash_after(Simulation& simulation, int steps) {
 
 plan::SimulationSpec plan_with_everything(plan::CouplingMode coupling) {
   plan::SimulationSpec spec = make_small_plan();
-  spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", geometry::ChartBox{0.5, 1.0, 0.0, 1.0}}};
+  spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}},
+                         {"right", geometry::ChartBox{0.5, 1.0, 0.0, 1.0}}};
   spec.injections = {{"left", 0.1e-6, 1e-6, std::nullopt, std::nullopt},
                      {"right", 0.1e-6, 2e-6, std::nullopt, geometry::ChartPoint{0.7, 0.5}}};
   spec.coupling = coupling;

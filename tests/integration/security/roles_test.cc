@@ -55,7 +55,8 @@ TEST_F(RolesTest, EveryMethodIsThoughtOf) {
   EXPECT_GE(methods_.size(), expected_roles().size()) << "reflection is open to everybody";
   for (const std::string& method : methods_) {
     EXPECT_EQ(expected_roles().count(method), 1u)
-        << method << " is new: say in this test, in core/doc/security.md and in server/entry/method_rules.cc who may call it";
+        << method
+        << " is new: say in this test, in core/doc/security.md and in server/entry/method_rules.cc who may call it";
   }
 }
 

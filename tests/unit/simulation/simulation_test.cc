@@ -45,7 +45,8 @@ TEST(SimulationRun, LumpedKeepsTheTotalVolume) {
 
 TEST(SimulationRun, ZonesAreSealedFromEachOther) {
   plan::SimulationSpec spec = make_small_plan();
-  spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", geometry::ChartBox{0.5, 1.0, 0.0, 1.0}}};
+  spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}},
+                         {"right", geometry::ChartBox{0.5, 1.0, 0.0, 1.0}}};
   spec.injections = {{"left", 0.2e-6, 1e-6, std::nullopt, std::nullopt}};
   const auto simulation = make_small_simulation(spec);
   const double before = simulation->zone_reports()[1].volume;
@@ -192,7 +193,8 @@ TEST(SimulationFrames, MatchTheirTopologyAndTheReport) {
 
 TEST(SimulationFrames, NumberTheZonesUnderTheSkin) {
   plan::SimulationSpec spec = make_small_plan();
-  spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}}, {"right", geometry::ChartBox{0.5, 1.0, 0.0, 0.5}}};
+  spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}},
+                         {"right", geometry::ChartBox{0.5, 1.0, 0.0, 0.5}}};
   spec.injections[0].zone = "left";
   spec.injections[0].site.reset();
   spec.probes.clear();

@@ -48,19 +48,29 @@ void print_error(const Application& application, const absl::Status& status) {
   }
 }
 
+/// Counts the words after an option that are its value.
+int n_values(const CLI::App& app, const std::string& option) {
+  const CLI::Option* known = app.get_option_no_throw(option);
+  return known == nullptr ? 0 : known->get_items_expected_min();
+}
+
 /// Refuses a command line with a word for a command that there is not, and names the nearest one there is.
 absl::Status check_commands(const CLI::App& root, int argc, char** argv) {
   const CLI::App* app = &root;
   std::string path;
-  for (int i = 1; i < argc && argv[i][0] != '-'; ++i) {
+  for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
+    if (word.starts_with("-")) {
+      i += n_values(*app, word);
+      continue;
+    }
     std::vector<std::string> names;
     const CLI::App* named = nullptr;
     for (const CLI::App* command : app->get_subcommands({})) {
       names.push_back(command->get_name());
       if (command->get_name() == word) named = command;
     }
-    if (names.empty()) break;
+    if (names.empty()) return absl::OkStatus();
     if (named == nullptr) {
       const std::string nearest = find_nearest_name(word, names);
       const std::string hint = nearest.empty() ? "" : absl::StrCat(" (did you mean '", path, nearest, "'?)");

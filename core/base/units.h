@@ -20,14 +20,14 @@ inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 inline constexpr double kPascalsPerKilopascal = 1e3;
 inline constexpr double kMegapascalsPerPascal = 1e-6;
 inline constexpr double kMillijoulesPerJoule = 1e3;
-/// Of a wall's stiffness per area: Pa/m in a kPa/mm.
+/// Stiffness of a wall per area: Pa/m in a kPa/mm.
 inline constexpr double kPascalsPerMetrePerKilopascalPerMillimetre = 1e6;
-/// Of a spring: N/m in a N/mm, and N/mm in a N/m.
+/// Stiffness of a spring: N/m in a N/mm, and N/mm in a N/m.
 inline constexpr double kNewtonsPerMetrePerNewtonPerMillimetre = 1e3;
 inline constexpr double kNewtonsPerMillimetrePerNewtonPerMetre = 1e-3;
-/// Of a density: t/mm3 in a kg/m3.
+/// Density: t/mm3 in a kg/m3.
 inline constexpr double kTonnesPerCubicMillimetrePerKilogramPerCubicMetre = 1e-12;
-/// Of a wall's leakage: m2/(Pa s) in a mL/(s kPa cm).
+/// Leakage of a wall: m2/(Pa s) in a mL/(s kPa cm).
 inline constexpr double kLeakageUnit = 1e-6 / (1e3 * 1e-2);
 
 }  // namespace lipofill

@@ -30,7 +30,7 @@ bool can_run_pinned_kernels() {
 #endif
 }
 
-/// The variable is as it was afterwards: programs that this one starts choose for themselves.
+/// Pins the kernels and puts the variable back, so that programs which this one starts choose for themselves.
 bool pin_kernels() {
   if (!can_run_pinned_kernels()) return false;
   const char* given = std::getenv(kVariable);

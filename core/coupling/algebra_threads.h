@@ -8,7 +8,7 @@ namespace lipofill::coupling {
 /// thread that uses them calls this first. Decision record: core/doc/decisions/001-openblas-with-locks.md.
 void keep_algebra_on_this_thread();
 
-/// The family of OpenBLAS kernels that this process computes with, for example "Haswell".
+/// Returns the family of OpenBLAS kernels that this process computes with, for example "Haswell".
 ///
 /// Programs pin it before main() begins, whatever the processor and whatever OPENBLAS_CORETYPE says: OpenBLAS picks
 /// kernels by processor, and each family rounds in its own way, so that the same plan would end in other bytes on
@@ -16,7 +16,7 @@ void keep_algebra_on_this_thread();
 /// Decision record: core/doc/decisions/019-pinned-kernels.md. Checked by tests/integration/faces/pinned_results_test.cc.
 std::string algebra_kernels();
 
-/// Whether that family is the pinned one, so that results are those of every other machine.
+/// True when that family is the pinned one, so that results are those of every other machine.
 bool has_pinned_kernels();
 
 }  // namespace lipofill::coupling

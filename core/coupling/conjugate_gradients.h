@@ -11,10 +11,10 @@ namespace lipofill::coupling {
 ///     z = M^-1 r,   d <- z + beta d,   w = C d,   q = w + dt J d,   alpha = (r . z) / (d . q)
 ///     dp += alpha d,   moved += alpha w,   r -= alpha q,   beta = (r . z) / (r . z of the last iteration)
 ///
-/// with what the walls move, C dp, coming along at no cost.
+/// which give what the walls move, C dp, at no further cost.
 class ConjugateGradients {
  public:
-  /// What w may be made from: `w` still is that of the last iteration.
+  /// An iteration as `move` sees it, which may make the new w from the last one.
   struct Iterate {
     const Eigen::VectorXd& residual;     ///< r
     const Eigen::VectorXd& conditioned;  ///< z
@@ -30,7 +30,7 @@ class ConjugateGradients {
   bool solve(const PressureSystem& system, const Eigen::VectorXd& r, double tolerance, int most,
              Precondition precondition, Move move, Eigen::VectorXd& dp, Eigen::VectorXd& moved);
 
-  /// Since the start.
+  /// Counts of solves and of their iterations since the start.
   long n_solves() const { return n_solves_; }
   long n_iterations() const { return n_iterations_; }
 

@@ -18,9 +18,9 @@ class DensePressureRoute : public PressureRoute {
   bool solve(const PressureSystem& system, const Eigen::VectorXd& r, double tolerance, Eigen::VectorXd& dp,
              Eigen::VectorXd& moved) override;
 
-  /// C.
+  /// The compliance C [m3/Pa].
   const Eigen::MatrixXd& compliance() const { return *compliance_; }
-  /// The pressures alone. False: it cannot be factored.
+  /// Solves for the pressures alone. False when the matrix cannot be factored.
   bool solve_pressure(const PressureSystem& system, const Eigen::VectorXd& r, Eigen::VectorXd& dp);
 
  private:

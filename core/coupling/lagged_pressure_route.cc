@@ -75,7 +75,7 @@ void LaggedPressureRoute::precondition(const Eigen::VectorXd& r, Eigen::VectorXd
   z = (size * scale_) * work_.head(n).cast<double>();
 }
 
-/// C d from C z = r - J0 z: no pass over C, which is what an iteration costs.
+/// Computes C d from C z = r - J0 z, without a pass over C, which would be what an iteration costs.
 void LaggedPressureRoute::move(const ConjugateGradients::Iterate& at, Eigen::VectorXd& moved_direction) {
   moved_conditioned_ = at.residual;
   int offset = 0;

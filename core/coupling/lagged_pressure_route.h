@@ -20,7 +20,7 @@ namespace lipofill::coupling {
 ///
 /// so that an iteration passes over the factor only and not over C, and what it moves is exact to float32. Where cells
 /// are held, z is not M^-1 r in all cells, and C d is a product with C. Where conjugate gradients do not converge, the
-/// Cholesky factor of dt J + C (dense_pressure_route.h), which is counted.
+/// Cholesky factor of dt J + C (dense_pressure_route.h) serves, and that is counted.
 ///
 /// Checked by tests/unit/coupling/pressure_routes_test.cc and pressure_solver_test.cc.
 class LaggedPressureRoute : public PressureRoute {
@@ -29,7 +29,7 @@ class LaggedPressureRoute : public PressureRoute {
   static int iterations_of_a_preconditioner(int n_cells) { return 4 + n_cells / 45; }
 
   void set_walls(const WallCompliance& walls) override { direct_.set_walls(walls); }
-  /// With the C of the last keep_mobility.
+  /// Computes C p with the C of the last keep_mobility.
   void multiply_walls(const Eigen::VectorXd& p, Eigen::VectorXd& product) override { compliance_.multiply(p, product); }
   /// `moved` is good to float32: multiply_walls is exact.
   bool solve(const PressureSystem& system, const Eigen::VectorXd& r, double tolerance, Eigen::VectorXd& dp,

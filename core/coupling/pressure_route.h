@@ -8,7 +8,7 @@
 
 namespace lipofill::coupling {
 
-/// Since the start.
+/// Counts since the start.
 struct PressureCounts {
   long iterative_solves = 0;  ///< by conjugate gradients
   long iterations = 0;        ///< of those
@@ -25,9 +25,9 @@ class PressureRoute {
  public:
   virtual ~PressureRoute() = default;
 
-  /// The walls of the solves to come, always of one kind; what it points to must outlive them.
+  /// Takes the walls of the solves to come, always of one kind; what it points to must outlive them.
   virtual void set_walls(const WallCompliance& walls) = 0;
-  /// C p.
+  /// Computes C p.
   virtual void multiply_walls(const Eigen::VectorXd& p, Eigen::VectorXd& product) = 0;
 
   /// @param r          0 in the cells that are held
@@ -37,9 +37,9 @@ class PressureRoute {
   virtual bool solve(const PressureSystem& system, const Eigen::VectorXd& r, double tolerance, Eigen::VectorXd& dp,
                      Eigen::VectorXd& moved) = 0;
 
-  /// Whether solves with new walls need keep_mobility first.
+  /// True when solves with new walls need keep_mobility first.
   virtual bool is_lagged() const { return false; }
-  /// @param mobility  J0, the values of dt J of each film
+  /// Takes J0 for the preconditioner, the values of dt J of each film.
   virtual void keep_mobility(const PressureSystem& /*system*/, const std::vector<Eigen::VectorXd>& /*mobility*/) {}
 
   virtual PressureCounts counts() const { return {}; }

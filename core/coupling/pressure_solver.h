@@ -27,12 +27,12 @@ class PressureSolver {
 
   explicit PressureSolver(std::vector<film::FilmProjection*> films);
 
-  /// The walls of the solves to come, always of one kind; what it points to must outlive them.
+  /// Takes the walls of the solves to come, always of one kind; what it points to must outlive them.
   void set_walls(const WallCompliance& walls);
-  /// C p.
+  /// Computes C p.
   void multiply_walls(const Eigen::VectorXd& p, Eigen::VectorXd& product) { route_->multiply_walls(p, product); }
 
-  /// Whether solves with these walls need keep_mobility first.
+  /// True when solves with these walls need keep_mobility first.
   bool is_lagged() const { return route_ != nullptr && route_->is_lagged(); }
   /// Iterations, over all that a fresh preconditioner would need, that cost as much as a new one.
   int iterations_of_a_preconditioner() const {
@@ -50,7 +50,7 @@ class PressureSolver {
   bool solve(const Eigen::VectorXd& p, const std::vector<char>& held, const Eigen::VectorXd& r, double tolerance,
              Eigen::VectorXd& dp, Eigen::VectorXd& moved);
 
-  /// Since the start: solves by conjugate gradients, their iterations, and times that they did not converge.
+  /// Counts since the start: solves by conjugate gradients, their iterations, and how often they did not converge.
   long iterative_solves() const { return counts().iterative_solves; }
   long iterations() const { return counts().iterations; }
   long fallbacks() const { return counts().fallbacks; }

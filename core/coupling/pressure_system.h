@@ -8,7 +8,7 @@
 
 namespace lipofill::coupling {
 
-/// What a solve for pressures takes from the films, one after the other:
+/// The part of a solve for pressures that comes from the films, one after the other:
 ///
 ///     dt J = diag(dt J_1, dt J_2, ...)      -dV'/dp of each film at the pressures of the solve [m3/Pa]
 ///
@@ -34,12 +34,12 @@ class PressureSystem {
   bool holds_any() const { return holds_any_; }
   const std::vector<int>& gauge_cells() const { return gauge_cells_; }
 
-  /// product += dt J p.
+  /// Adds dt J p to the product.
   void add_mobility(const Eigen::VectorXd& p, Eigen::VectorXd& product) const;
-  /// values = 0 in the cells that are held.
+  /// Sets the values to 0 in the cells that are held.
   void hold(Eigen::VectorXd& values) const;
 
-  /// visit(row, column, value) of dt J, both triangles.
+  /// Calls visit(row, column, value) for dt J, both triangles.
   template <typename Visit>
   void for_each_entry(Visit visit) const {
     int offset = 0;

@@ -16,9 +16,9 @@ namespace lipofill::coupling {
 /// in a pattern that never changes.
 class SparsePressureFactor {
  public:
-  /// False: it cannot be factored.
+  /// Factors the matrix. False when it cannot be factored.
   bool factor(const PressureSystem& system, const Eigen::VectorXd& compliance);
-  /// (dt J + diag(c)) z = r.
+  /// Solves (dt J + diag(c)) z = r.
   void solve(const Eigen::VectorXd& r, Eigen::VectorXd& z) const { z = factor_.solve(r); }
 
  private:

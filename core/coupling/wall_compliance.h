@@ -7,7 +7,7 @@
 
 namespace lipofill::coupling {
 
-/// The compliance of the walls of all films to pressure: gap' = rest + C p. One of
+/// The compliance of the walls of all films to pressure: gap' = rest + C p. It is one of
 ///
 /// - diagonal (LUMPED; a Winkler wall, a/k a cell; a rigid wall, 0);
 /// - dense: C of all cells;

@@ -22,10 +22,6 @@ int FilmCells::film_of(int cell) const {
   return static_cast<int>(std::upper_bound(offset.begin(), offset.end(), cell) - offset.begin()) - 1;
 }
 
-int FilmCells::row_of(int cell) const {
-  return static_cast<int>(std::lower_bound(on_tissue.begin(), on_tissue.end(), cell) - on_tissue.begin());
-}
-
 void FilmCells::gather_tissue_part(const Eigen::VectorXd& all_cells, Eigen::VectorXd& part) const {
   part.resize(static_cast<Eigen::Index>(on_tissue.size()));
   for (size_t k = 0; k < on_tissue.size(); ++k) part[k] = all_cells[on_tissue[k]];

@@ -19,8 +19,6 @@ struct FilmCells {
   bool is_on_tissue(size_t film) const { return gap_of_film[film] >= 0; }
   /// The film that a cell belongs to.
   int film_of(int cell) const;
-  /// The row of the gap system that a cell on tissue has.
-  int row_of(int cell) const;
 
   /// Values of the cells on tissue, in the order of the gap system's rows.
   void gather_tissue_part(const Eigen::VectorXd& all_cells, Eigen::VectorXd& part) const;

@@ -26,17 +26,17 @@ class HeldFactor {
   static absl::StatusOr<std::unique_ptr<HeldFactor>> create(const model::FaceModel& model, TissueSystem& system,
                                                             StepCost& cost);
 
-  /// Factors at x. False: not positive definite, or not exact enough, in that precision.
+  /// Factors at x. False when the system is not positive definite, or the factor not exact enough, in that precision.
   bool factor_at(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& springs, double dt, coupling::Precision precision);
 
-  /// Whether a step from this state begins with a new factor.
+  /// True when a step from this state begins with a new factor.
   static bool is_due(const SimulationState& state);
-  /// Factors at the state's positions, in float32 as long as that has been enough, and notes it there. False: the
-  /// tissue is not positive definite.
+  /// Factors at the state's positions, in float32 as long as that has been enough, and notes it there. False
+  /// when the tissue is not positive definite.
   bool renew(double dt, SimulationState& state);
   /// Factors where the state says that it was factored last, unless that is the factor at hand.
   TakenUp take_up(const SimulationState& state);
-  /// Whether the factor is of other positions than these.
+  /// True when the factor is of other positions than these.
   bool is_late(const Eigen::Matrix3Xd& x) const { return !is_same(positions_, x); }
 
   coupling::CoupledFactor& factor() { return factor_; }

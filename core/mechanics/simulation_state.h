@@ -35,11 +35,11 @@ struct SimulationState {
   double film_dissipation = 0.0;  ///< lost to friction in the films since the start [J]
   Eigen::Matrix3Xd positions;     ///< [m]   (3, n_nodes); empty without tissue
   Eigen::Matrix3Xd velocities;    ///< [m/s] (3, n_nodes)
-  /// Of the three steps before the last, the latest first [m/s] (3, n_nodes).
+  /// Velocities of the three steps before the last, the latest first [m/s] (3, n_nodes).
   std::array<Eigen::Matrix3Xd, 3> earlier_velocities;
   int equal_steps = 0;               ///< of the last one's size, in a row
   Eigen::VectorXd spring_is_intact;  ///< 1 or 0, of every spring of a ligament
-  /// Where the tissue was when its system was last factored; the factor serves later steps until it no longer
+  /// Positions of the tissue when its system was last factored; the factor serves later steps until it no longer
   /// converges.
   Eigen::Matrix3Xd factored_positions;
   Eigen::VectorXd factored_springs;  ///< spring_is_intact then

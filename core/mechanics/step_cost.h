@@ -25,7 +25,7 @@ struct StepTimes {
   }
 };
 
-/// What a step took: no part of the state, and nothing depends on it.
+/// The cost of a step: no part of the state, and nothing depends on it.
 struct StepCost {
   StepTimes times;
   int factorisations = 0;
@@ -36,7 +36,7 @@ struct StepCost {
   int fallbacks = 0;             ///< float64 in place of float32, a direct solve in place of an iterative one
 };
 
-/// What many steps took.
+/// The cost of many steps.
 struct CostSum {
   StepTimes times;
   uint64_t factorisations = 0;

@@ -10,7 +10,7 @@
 namespace lipofill::mechanics {
 namespace {
 
-/// Of stiffness times extent: a balance of forces this small is round-off.
+/// A balance of forces smaller than this share of stiffness times extent is round-off.
 constexpr double kLeastForceShare = 1e-10;
 
 double find_least_force(const solid::Tissue& tissue) {

@@ -63,7 +63,7 @@ class TissueSystem {
   Eigen::VectorXd forces_springs_;
 };
 
-/// Whether two arrays have the same shape and values.
+/// True when two arrays have the same shape and values.
 template <typename Matrix>
 bool is_same(const Matrix& a, const Matrix& b) {
   return a.cols() == b.cols() && a.rows() == b.rows() && a == b;

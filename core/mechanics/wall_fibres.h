@@ -13,7 +13,7 @@
 
 namespace lipofill::mechanics {
 
-/// Where a ligament's springs are among all.
+/// The place of a ligament's springs among all.
 struct LigamentLayout {
   std::string name;
   int first_spring = 0;

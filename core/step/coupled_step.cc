@@ -194,7 +194,7 @@ bool CoupledStep::renew_factor(double dt, StepOutcome& outcome) {
   return true;
 }
 
-/// Whether the factor at hand is of other positions than those of the iteration.
+/// True when the factor at hand is of other positions than those of the iteration.
 bool CoupledStep::is_late(const StepOutcome& outcome) const {
   return factor_ && factor_->is_late(outcome.state.positions);
 }

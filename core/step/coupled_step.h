@@ -13,7 +13,7 @@
 
 namespace lipofill::step {
 
-/// What came of trying a step.
+/// The outcome of trying a step.
 struct StepOutcome {
   bool accepted = false;
   std::string reason;  ///< why not
@@ -37,7 +37,7 @@ struct StepOutcome {
 ///
 /// with J the tangent of the fat's flow law and p not below the suction limit (film_solve.h), repeated from the new
 /// positions (Newton) until forces balance to kForceTolerance and the gap holds the film's volume to kGapTolerance.
-/// What mismatch is left enters the next step's d: it cannot accumulate.
+/// The mismatch that is left enters the next step's d: it cannot accumulate.
 ///
 /// S, B and C on the left may be those of earlier positions (held_factor.h): only the right sides decide where the
 /// iteration ends,
@@ -70,10 +70,10 @@ class CoupledStep {
   uint64_t memory_bytes() const;
   /// The tissue as it was set up; null for a model without layers.
   const mechanics::TissueSetup* tissue() const { return system_ ? &system_->setup() : nullptr; }
-  /// Where the films lie.
+  /// The mid-surfaces of the films.
   FilmGeometry& geometry() { return *geometry_; }
   const FilmGeometry& geometry() const { return *geometry_; }
-  /// What was spent since reset_cost.
+  /// The cost of the steps since reset_cost.
   const mechanics::StepCost& cost() const { return cost_; }
   void reset_cost() { cost_ = {}; }
 
@@ -106,7 +106,7 @@ class CoupledStep {
   Predictor predictor_;
   coupling::FilmSolution solution_;  ///< of the iteration under way
   Eigen::VectorXd residual_;         ///< force without that of the films [N] (n_dofs)
-  /// What an iteration writes into again and again.
+  /// Vectors that every iteration writes into.
   struct Iteration {
     Eigen::VectorXd pressure;              ///< of cells on tissue [Pa]
     Eigen::VectorXd force;                 ///< that a solve starts from [N] (n_dofs)

@@ -52,7 +52,7 @@ class FilmStep {
   void finish(const mechanics::SimulationState& from, double dt, const coupling::FilmSolution& solution,
               mechanics::SimulationState& next) const;
 
-  /// Of a state's gap [m3] (n cells), what is void at the suction limit.
+  /// Finds which part of a state's gap [m3] (n cells) is void at the suction limit.
   Eigen::VectorXd compute_void(const mechanics::SimulationState& state, const Eigen::VectorXd& gap) const;
 
  private:

@@ -52,7 +52,7 @@ bool open_to(const Opening& opening, const Eigen::VectorXd& target, double toler
   for (int iteration = 0; iteration < kMaxOpeningIterations; ++iteration) {
     if (!opening.factor->factor_at(state.positions, state.spring_is_intact, kOpeningStep, coupling::Precision::kDouble))
       return false;
-    // From the present positions at rest: no inertia and no damping, weight and internal force only.
+    // A step that begins at the present positions, at rest, has weight and internal force only.
     Eigen::VectorXd force, response, dx;
     opening.forces->compute(state, state.positions, kOpeningStep, force);
     factor.solve_gap_response(force, response);

@@ -9,7 +9,7 @@
 
 namespace lipofill::step {
 
-/// What opens the tissue for the films' initial thickness. All of it outlives the call.
+/// The parts that open the tissue for the films' initial thickness. All of them outlive the call.
 struct Opening {
   const std::vector<plan::FilmLayout>& films;
   const mechanics::FilmCells& cells;

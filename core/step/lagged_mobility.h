@@ -19,11 +19,11 @@ class LaggedMobility {
   bool is_used() const { return is_used_; }
   /// Preconditions as the state says, unless it is so at present.
   void take_up(const mechanics::SimulationState& state);
-  /// Whether iterations that new mobilities would have saved have cost as much as they do.
+  /// True when iterations that new mobilities would have saved have cost as much as they do.
   bool is_due(const mechanics::SimulationState& state) const;
   /// Preconditions with the mobilities of a solution, and notes them in the state.
   void renew(const coupling::FilmSolution& at, mechanics::SimulationState& state);
-  /// After a new factor, whose compliance the preconditioner does not have yet.
+  /// Drops the preconditioner, which does not have the compliance of a new factor yet.
   void forget() { kept_.clear(); }
 
  private:

@@ -22,9 +22,9 @@ class Predictor {
  public:
   explicit Predictor(const mechanics::FilmCells& cells) : cells_(cells) {}
 
-  /// Positions to start a step of `dt` [s] from; after steps of other sizes, those that the last velocity leads to.
+  /// Predicts positions to start a step of `dt` [s] from; after steps of other sizes, those that the last velocity leads to.
   static void predict_positions(const mechanics::SimulationState& from, double dt, Eigen::Matrix3Xd& positions);
-  /// Pressure and volume of every cell, and the fluxes of the last step. After some steps of this size the films are
+  /// Predicts pressure and volume of every cell. After some steps of this size the films are
   /// carried on along a parabola, else along a line.
   void predict_films(const mechanics::SimulationState& from, double dt, coupling::FilmSolution& start);
 

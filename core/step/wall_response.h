@@ -10,7 +10,7 @@
 
 namespace lipofill::step {
 
-/// How the walls of all films give way to pressure, in the order of all cells: gap = rest + C p. Cells on tissue take
+/// The response of the walls of all films to pressure, in the order of all cells: gap = rest + C p. Cells on tissue take
 /// their C from its factor, those on Winkler walls a/k, those between rigid walls 0.
 class WallResponse {
  public:
@@ -21,7 +21,7 @@ class WallResponse {
   /// Brings the compliance to what the factor holds.
   void update();
   const coupling::WallCompliance& compliance() const { return walls_; }
-  /// Whether C of the tissue is known by its products with vectors alone.
+  /// True when C of the tissue is known by its products with vectors alone.
   bool is_implicit() const { return factor_ != nullptr && !factor_->has_compliance(); }
 
   /// Volume of the films at rest [m3] (n cells).

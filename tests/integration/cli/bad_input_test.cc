@@ -20,6 +20,7 @@ class BadInputTest : public CliTest {
 TEST_F(BadInputTest, Usage) {
   expect_failure("lipofill", 2, "subcommand");
   expect_failure("lipofill fly", 2, "there is no command 'fly'; see lipofill --help");
+  expect_failure("lipofill --json fly", 2, "there is no command 'fly'; see lipofill --help");
   expect_failure("lipofill plan chek", 2,
                  "there is no command 'plan chek' (did you mean 'plan check'?); see lipofill plan --help");
   expect_failure("lipofill run plan.json", 2, "--out");

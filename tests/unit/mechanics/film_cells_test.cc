@@ -27,7 +27,8 @@ TEST(FilmCells, NumbersFilmsOneAfterTheOtherAndTissueByItself) {
   EXPECT_EQ(cells.film_of(2 * n), 2);
   EXPECT_EQ(cells.film_of(3 * n - 1), 2);
   for (size_t row = 0; row < cells.on_tissue.size(); ++row) {
-    EXPECT_EQ(cells.row_of(cells.on_tissue[row]), static_cast<int>(row));
+    const int expected = static_cast<int>(row) + (static_cast<int>(row) < n ? 0 : n);
+    EXPECT_EQ(cells.on_tissue[row], expected);
     EXPECT_NE(cells.film_of(cells.on_tissue[row]), 1);
   }
 }

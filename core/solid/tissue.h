@@ -63,7 +63,6 @@ class Tissue {
   int n_springs() const { return static_cast<int>(springs_.size()); }
   /// A broken spring carries nothing from the next assemble on. All are intact at first.
   void set_spring_intact(int spring, bool intact) { springs_[spring].intact = intact; }
-  bool spring_intact(int spring) const { return springs_[spring].intact; }
   /// Tension of a spring [N], 0 when slack or broken, and the distance between its ends [m], both
   /// at the last assemble.
   double spring_tension(int spring) const { return springs_[spring].tension; }

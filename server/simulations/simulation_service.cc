@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/backend/parking.h"
+#include "server/backend/plan_check.h"
 #include "server/backend/result_reading.h"
 #include "server/backend/simulation_creation.h"
 #include "server/entry/listing.h"
@@ -127,6 +128,15 @@ Reactor* SimulationService::CreateSimulation(Context* context, const v1::CreateS
     auto simulation = create_simulation(backend_, call_of(context).principal, *request, caller_has_left(context));
     if (simulation.ok()) *response = *std::move(simulation);
     return simulation.status();
+  });
+}
+
+Reactor* SimulationService::CheckPlan(Context* context, const v1::CheckPlanRequest* request,
+                                      v1::CheckPlanResponse* response) {
+  return answer_later(context, request, backend_, [this, context, request, response] {
+    auto check = check_plan(backend_, *request, caller_has_left(context));
+    if (check.ok()) *response = *std::move(check);
+    return check.status();
   });
 }
 

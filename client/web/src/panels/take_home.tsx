@@ -3,9 +3,11 @@ import { signal } from "@preact/signals";
 import type { Simulation } from "@wire/simulation_pb";
 import { simulations } from "../api/client";
 import { writePlan } from "../plan/plan_file";
-import { attempt, canRun, plan, scanFile, tell } from "../plan/state";
+import { canRun, plan, scanFile } from "../plan/state";
+import { attempt, tell } from "../activity";
 import { save, seriesCsv, stateWord, surfaceObj } from "../run/exports";
-import { hasResult, openExisting, rows, simulation } from "../run/run";
+import { openExisting } from "../run/run";
+import { hasResult, rows, simulation } from "../run/state";
 import { FileButton, Section, SelectField } from "../widgets/fields";
 import { shownScene } from "../stage/stage_state";
 

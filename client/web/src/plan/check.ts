@@ -1,74 +1,64 @@
-// Where the daemon places the zones of the plan: asked with a simulation that is made, looked at and taken away.
-import { effect, signal } from "@preact/signals";
+// What the daemon says of the plan on its model: where the zones are, what is wrong, what is worth knowing.
+import { batch, effect, signal } from "@preact/signals";
 import { toJsonString } from "@bufbuild/protobuf";
 import { SimulationSpecSchema } from "@wire/simulation_pb";
-import { frames, newId, simulations } from "../api/client";
-import { ArrayAssembler, toNumbers } from "../api/arrays";
-import { toProblem } from "../api/errors";
-import { simulationSpec } from "../plan/actions";
-import { busy, modelIsCurrent, plan, violations } from "../plan/state";
-import { toPlanFields } from "../plan/violations";
-import { step } from "./stage_state";
+import type { PlacedZone } from "@wire/simulation_service_pb";
+import { busy } from "../activity";
+import { simulations } from "../api/client";
+import { toProblem, type Violation } from "../api/errors";
+import { simulationSpec } from "./actions";
+import { modelIsCurrent, plan, violations } from "./state";
+import { toPlanFields } from "./violations";
 
+export const placedZones = signal<PlacedZone[]>([]);
 /** Number of the zone under each vertex of the model's skin, from 1; 0: none. */
-export const zonePreview = signal<Float32Array | undefined>(undefined);
+export const zoneUnderSkin = signal<number[]>([]);
+export const remarks = signal<Violation[]>([]);
 const quietMs = 500;
 
-async function readZones(simulation: string): Promise<Float32Array | undefined> {
-  const leave = new AbortController();
-  const assembler = new ArrayAssembler();
-  try {
-    for await (const { message } of frames.watch({ simulation, fields: ["skin.zone"] }, { signal: leave.signal })) {
-      if (message.case !== "frame") continue;
-      message.value.fields.forEach((field) => assembler.add(field));
-      if (!message.value.last) continue;
-      const zone = assembler.take().get("skin.zone");
-      return zone && toNumbers(zone);
-    }
-  } finally {
-    leave.abort();
-  }
-  return undefined;
+let leave = new AbortController();
+let asked = "";
+
+/** Forgets the last answer, and the question that may be on its way. */
+function forget(): void {
+  leave.abort();
+  asked = "";
+  batch(() => {
+    [placedZones.value, zoneUnderSkin.value, remarks.value] = [[], [], []];
+  });
 }
 
 async function ask(text: string): Promise<void> {
-  const spec = simulationSpec();
-  let name = "";
+  leave.abort();
+  leave = new AbortController();
+  const { signal: left } = leave;
+  asked = text;
   try {
-    name = (await simulations.createSimulation({ requestId: newId(), displayName: "check-of-a-plan", spec })).name;
-    const zones = await readZones(name);
-    if (text !== shown) return;
-    zonePreview.value = zones;
-    violations.value = [];
+    const answer = await simulations.checkPlan({ spec: simulationSpec() }, { signal: left });
+    if (left.aborted) return;
+    batch(() => {
+      placedZones.value = answer.zones;
+      zoneUnderSkin.value = answer.zoneUnderSkinPoint;
+      remarks.value = toPlanFields(answer.remarks, "simulation");
+      violations.value = toPlanFields(answer.violations, "simulation");
+    });
   } catch (error) {
-    if (text === shown && !toProblem(error).lost)
-      violations.value = toPlanFields(toProblem(error).violations, "simulation");
-  } finally {
-    // A check that cannot be taken away now goes with the daemon's own clearing up.
-    if (name) await simulations.deleteSimulation({ name }).catch(() => undefined);
+    if (left.aborted) return;
+    // A lost connection says nothing of the plan.
+    if (toProblem(error).lost) asked = "";
+    else violations.value = toPlanFields(toProblem(error).violations, "simulation");
   }
 }
 
-let shown = "";
-
-/** Asks again when the plan has been left alone for a moment. */
-export function bindZonePreview(): () => void {
+/** Asks when the plan has been left alone for a moment, while `wanted` says so. */
+export function bindPlanCheck(wanted: () => boolean): () => void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   return effect(() => {
     clearTimeout(timer);
-    if (!modelIsCurrent.value) {
-      zonePreview.value = undefined;
-      shown = "";
-      return;
-    }
+    if (!modelIsCurrent.value) return forget();
     const { simulation } = plan.value;
-    if (step.value !== "fat" || busy.value || !simulation || !simulation.films.some(({ zones }) => zones.length > 0))
-      return;
+    if (!wanted() || busy.value || !simulation?.films.some(({ zones }) => zones.length > 0)) return;
     const text = toJsonString(SimulationSpecSchema, simulation);
-    if (text === shown) return;
-    timer = setTimeout(() => {
-      shown = text;
-      void ask(text);
-    }, quietMs);
+    if (text !== asked) timer = setTimeout(() => void ask(text), quietMs);
   });
 }

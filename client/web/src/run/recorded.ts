@@ -7,7 +7,8 @@ import { SeriesRowSchema, SimulationSchema, type SeriesRow } from "@wire/simulat
 import type { WireArray } from "../api/arrays";
 import type { Mesh } from "../api/meshes";
 import type { Frame } from "../api/watch";
-import { close, faceMesh, lookAt, meshes, recorded, rows, runAxes, simulation, store } from "./run";
+import { close, lookAt } from "./run";
+import { faceMesh, meshes, recorded, rows, runAxes, simulation, store } from "./state";
 import type { Point } from "../scene/surface_geometry";
 
 interface Surface {

@@ -5,9 +5,10 @@ import { simulations } from "../api/client";
 import { writePlan } from "../plan/plan_file";
 import { canRun, plan, scanFile } from "../plan/state";
 import { attempt, tell } from "../activity";
-import { save, seriesCsv, stateWord, surfaceObj } from "../run/exports";
+import { save, stateWord, surfaceObj } from "../run/exports";
 import { openExisting } from "../run/run";
 import { hasResult, rows, simulation } from "../run/state";
+import { writeSeries } from "../run/series_csv";
 import { FileButton, Section, SelectField } from "../widgets/fields";
 import { shownScene } from "../stage/stage_state";
 
@@ -40,7 +41,7 @@ export function Exports() {
           type="button"
           class="button"
           disabled={rows.value.length === 0}
-          onClick={() => save(`${name}.csv`, seriesCsv(rows.value))}
+          onClick={() => save(`${name}.csv`, writeSeries(rows.value, simulation.value?.spec?.probes ?? []))}
         >
           CSV
         </button>

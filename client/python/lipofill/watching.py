@@ -178,7 +178,7 @@ class Watch:
 
     def _took(self, frame: Frame) -> None:
         self._request.seen_epoch, self._request.seen_sequence = frame.epoch, frame.sequence
-        self._channel.topologies.keep(self._request, frame.meshes)
+        self._channel.topologies.remember(self._request, frame.meshes)
         self._seen_any, self._broken_since = True, None
         if self._request.max_unacknowledged_frames > 0 and not frame.end:
             self._to_acknowledge = frame

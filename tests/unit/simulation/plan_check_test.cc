@@ -20,12 +20,11 @@ PlanCheck check(const plan::SimulationSpec& spec) {
   return found.ok() ? *found : PlanCheck{};
 }
 
-/// Two zones side by side, 12 mm of 48 mm wide each.
+/// Two zones side by side, three by six and three by four cells of 8 mm.
 plan::SimulationSpec make_two_zones() {
   plan::SimulationSpec spec = make_small_plan();
-  spec.films[0].n_xi = spec.films[0].n_eta = 4;
   spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}},
-                         {"right", geometry::ChartBox{0.5, 1.0, 0.0, 0.75}}};
+                         {"right", geometry::ChartBox{0.5, 1.0, 0.0, 2.0 / 3.0}}};
   spec.injections[0].zone = "right";
   return spec;
 }
@@ -39,9 +38,9 @@ TEST(CheckPlan, FindsZonesWhereTheSimulationHasThem) {
   EXPECT_EQ(found.zones[1].number, 2);
   EXPECT_EQ(found.zones[1].film, "film");
   EXPECT_EQ(found.zones[1].name, "right");
-  EXPECT_EQ(found.zones[1].n_cells, 6);
+  EXPECT_EQ(found.zones[1].n_cells, 12);
   EXPECT_NEAR(found.zones[0].area, 0.024 * 0.048, 1e-12);
-  EXPECT_NEAR(found.zones[1].area, 0.024 * 0.036, 1e-12);
+  EXPECT_NEAR(found.zones[1].area, 0.024 * 0.032, 1e-12);
   ASSERT_EQ(found.zones[1].outline.size(), 1u);
   EXPECT_NEAR(found.zones[1].outline[0].row(0).minCoeff(), 0.024, 1e-12);
   EXPECT_NEAR(found.zones[1].outline[0].row(0).maxCoeff(), 0.048, 1e-12);
@@ -79,8 +78,9 @@ TEST(CheckPlan, RemarksOnInjectionsThatComeToNothing) {
 
 TEST(CheckPlan, RemarksOnZonesThatAreAllEdge) {
   plan::SimulationSpec spec = make_two_zones();
-  spec.films[0].zones[1].shape = geometry::ChartBox{0.5, 1.0, 0.0, 0.5};
+  spec.films[0].zones[1].shape = geometry::ChartBox{0.5, 1.0, 0.0, 1.0 / 3.0};
   spec.injections[0].site.reset();
+  spec.probes.clear();
   const PlanCheck found = check(spec);
   EXPECT_THAT(found.violations, IsEmpty());
   EXPECT_THAT(found.remarks, ElementsAre(Field(&FieldViolation::field, "films[0].zones[1]")));

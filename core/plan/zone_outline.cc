@@ -1,6 +1,7 @@
 #include "core/plan/zone_outline.h"
 
 #include <array>
+#include <cstddef>
 #include <map>
 
 namespace lipofill::plan {

@@ -6,7 +6,7 @@
 namespace lipofill::film {
 namespace {
 
-/// Share of the Newtonian conductance that an unyielded quadrant keeps in the tangent. It steers Newton's iteration
+/// Share of the Newtonian conductance that an unyielded quadrant has in the tangent. It steers Newton's iteration
 /// only, never the flux.
 constexpr double kLeastTangent = 1e-9;
 

@@ -3,7 +3,7 @@
 namespace lipofill::film {
 namespace {
 
-/// Keeps the system regular on dry edges, whose velocity is set to zero afterwards [m].
+/// Makes the system regular on dry edges, whose velocity is set to zero afterwards [m].
 constexpr double kThinnest = 1e-7;
 constexpr double kTolerance = 1e-13;
 /// Conjugate gradients end after as many iterations as there are unknowns but for rounding.

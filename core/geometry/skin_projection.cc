@@ -35,7 +35,7 @@ CellPoint evaluate(const LayeredGrid& grid, const Cell& cell, double r, double s
   return point;
 }
 
-/// Local coordinates of the foot of a point in a cell continued bilinearly. Kept near the cell: far out, a bilinear
+/// Local coordinates of the foot of a point in a cell continued bilinearly. It stays near the cell: far out, a bilinear
 /// cell turns over.
 Eigen::Vector2d find_foot(const LayeredGrid& grid, const Cell& cell, const Eigen::Vector3d& point, Eigen::Vector2d rs) {
   constexpr int kMaxIterations = 20;

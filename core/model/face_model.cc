@@ -41,7 +41,7 @@ void add_matrix(Hasher& hasher, const Eigen::Matrix3Xd& matrix) {
   hasher.add_bytes(matrix.data(), static_cast<size_t>(matrix.size()) * sizeof(double));
 }
 
-/// Adds the prestress to the hash, at the end and only if there is one: a model without keeps the
+/// Adds the prestress to the hash, at the end and only if there is one: a model without has the
 /// hash it had before layers had a prestress.
 void add_prestress(Hasher& hasher, const std::vector<TissueLayerSpec>& layers) {
   const auto is_tense = [](const TissueLayerSpec& layer) { return layer.material.prestress != 0.0; };

@@ -8,7 +8,7 @@ class vtkOutputWindow;
 
 namespace lipofill::client {
 
-/// Keeps what VTK would print, from here to the end of the scope: its readers and writers tell of errors in no other
+/// Collects what VTK would print, from here to the end of the scope: its readers and writers tell of errors in no other
 /// way.
 class VtkMessages {
  public:

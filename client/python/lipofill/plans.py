@@ -93,7 +93,7 @@ class Plan:
         return plan
 
     def to_json(self) -> str:
-        """The plan file; numbers keep every digit."""
+        """The plan file; numbers have every digit."""
         content = json_format.MessageToDict(self.message, preserving_proto_field_name=True)
         return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 

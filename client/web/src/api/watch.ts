@@ -113,7 +113,7 @@ class Progress {
     }
   }
 
-  /** Half a window at a time: frames keep coming, and a page that falls behind is never more than a window old. */
+  /** Half a window at a time: frames go on coming, and a page that falls behind is never more than a window old. */
   private acknowledge(): void {
     if (++this.unacknowledged < window / 2) return;
     this.unacknowledged = 0;

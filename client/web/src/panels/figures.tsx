@@ -1,6 +1,7 @@
 // The figures a surgeon looks for first, and how they came about.
 import { readable } from "../plan/anatomy";
-import { lookAt, rows, simulation, timeShown } from "../run/run";
+import { lookAt } from "../run/run";
+import { rows, simulation, timeShown } from "../run/state";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { Plot } from "../widgets/plot";
 

@@ -5,7 +5,8 @@ import { create } from "@bufbuild/protobuf";
 import { cornersOf, landmarksOf, readable, regionLabels, type Side } from "../plan/anatomy";
 import { build } from "../plan/actions";
 import { freeName, resolutions, setResolution } from "../plan/new_plan";
-import { busy, editPlan, model, modelIsCurrent, plan, region, scan } from "../plan/state";
+import { editPlan, model, modelIsCurrent, plan, region, scan } from "../plan/state";
+import { busy } from "../activity";
 import { tool } from "../plan/tools";
 import { CheckField, Complaint, NumberField, Section, Segmented, SelectField } from "../widgets/fields";
 

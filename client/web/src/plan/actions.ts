@@ -12,7 +12,6 @@ import { uploadScan } from "../api/upload";
 import { parseLandmarks } from "./landmarks";
 import { parsePlan } from "./plan_file";
 import {
-  attempt,
   editPlan,
   modelIsCurrent,
   model,
@@ -25,6 +24,7 @@ import {
   setModel,
   violations,
 } from "./state";
+import { attempt } from "../activity";
 import { toPlanFields } from "./violations";
 
 /** The patient of this page; made up when there is none yet. */

@@ -80,7 +80,7 @@ export function landmarksOf(region: string, side: Side): string[] {
   ];
 }
 
-/** The corners of a region on either side; the mirrored ones in the order that keeps them anticlockwise. */
+/** The corners of a region on either side; the mirrored ones in the order that leaves them anticlockwise. */
 export function cornersOf(region: string, side: Side): SkinPoint[] {
   const corners = regions[region].corners.map((corner) =>
     create(SkinPointSchema, {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -28,7 +29,7 @@ std::array<double, 4> corner_weights(double s, double t) {
 
 /// What the zones have of each quadrilateral of the level.
 struct QuadCover {
-  std::vector<std::set<int>> zones;            ///< those with a part of it
+  std::vector<std::map<int, double>> zones;    ///< those with a part of it, and its share
   std::vector<std::array<double, 4>> covered;  ///< int N_a over the parts, by corner; 1/4 each where all is covered
 };
 
@@ -40,18 +41,26 @@ QuadCover cover_quads(const LayeredGrid& level, const film::FilmGrid& grid,
   cover.covered.assign(n_quads, {});
   for (const film::CellPiece& piece : pieces) {
     const size_t quad = static_cast<size_t>(piece.quad_j) * level.n_xi + piece.quad_i;
-    cover.zones[quad].insert(grid.zone_of_cell[piece.cell]);
+    double& share = cover.zones[quad][grid.zone_of_cell[piece.cell]];
     const double s0 = piece.box.xi_min * level.n_xi - piece.quad_i;
     const double s1 = piece.box.xi_max * level.n_xi - piece.quad_i;
     const double t0 = piece.box.eta_min * level.n_eta - piece.quad_j;
     const double t1 = piece.box.eta_max * level.n_eta - piece.quad_j;
     for (int g = 0; g < 4; ++g) {
       const double weight = 0.25 * piece.share[g] * (s1 - s0) * (t1 - t0);
+      share += weight;
       const auto corners = corner_weights(s0 + kGauss[g & 1] * (s1 - s0), t0 + kGauss[g >> 1] * (t1 - t0));
       for (int c = 0; c < 4; ++c) cover.covered[quad][c] += weight * corners[c];
     }
   }
   return cover;
+}
+
+/// The zone that has the most of a quadrilateral, -1: none.
+int main_zone(const std::map<int, double>& zones) {
+  const auto most = std::max_element(zones.begin(), zones.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == zones.end() ? -1 : most->first;
 }
 
 double total(const std::array<double, 4>& of_corners) {
@@ -156,17 +165,12 @@ class BondBuilder {
   /// @param least_cover  share of a quadrilateral that a zone has to have for the layers to part there
   void part_zones_rigidly(double least_cover) {
     open_places([&](int i, int j) {
-      std::set<int> common;
-      bool is_first = true;
+      std::set<int> zones;
       for_each_quad_at(grid_, i, j, [&](int qi, int qj) {
         const size_t quad = quad_of(qi, qj);
-        const bool is_parted = total(cover_.covered[quad]) >= least_cover && cover_.zones[quad].size() == 1;
-        const std::set<int> here = is_parted ? cover_.zones[quad] : std::set<int>{};
-        if (is_first) common = here;
-        if (here != common) common.clear();
-        is_first = false;
+        zones.insert(total(cover_.covered[quad]) >= least_cover ? main_zone(cover_.zones[quad]) : -1);
       });
-      return !common.empty();
+      return zones.size() == 1 && !zones.contains(-1);
     });
   }
 

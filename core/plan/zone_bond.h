@@ -22,7 +22,8 @@ struct ZoneBond {
 /// zones k = k1 d/w at a distance d along the skin from the nearest outline, and the layers share their nodes from d = w
 /// on. Inside a zone a neighbour at a distance d < w/2 adds the septum between them, k1 (1 - 2 d/w).
 ///
-/// Rigid edges open the places whose four quadrilaterals all have a part of one zone, and tie them by what those
+/// Rigid edges open the places whose four quadrilaterals all belong to one zone, the one with the largest part of each,
+/// and tie them by what those
 /// quadrilaterals have outside the outline with the stiffness of the tissue, E/L with L the side of a quadrilateral: the
 /// place where the layers part moves with the outline, not by quadrilaterals.
 /// Checked by tests/unit/plan/zone_bond_test.cc and tests/verification/coupling/zone_edge_test.cc.

@@ -68,13 +68,11 @@ absl::StatusOr<Region> find_region(std::string_view name) {
                                           absl::StrJoin(region_names(), ", "), " followed by _left or _right"));
 }
 
-bool PlacedRegion::contains(const Eigen::Vector3d& point) const {
+double PlacedRegion::level(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d offset = point - centre;
   const double length = offset.dot(along);
   const double width = (offset - length * along).norm();
-  const double a = length / half_length;
-  const double b = width / half_width;
-  return a * a + b * b <= 1.0;
+  return 1.0 - std::hypot(length / half_length, width / half_width);
 }
 
 double PlacedRegion::compute_radius(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {

@@ -31,7 +31,9 @@ struct PlacedRegion {
   Eigen::Vector3d along;     ///< unit
   double half_length = 0.0;  ///< [m]
   double half_width = 0.0;   ///< [m]
-  bool contains(const Eigen::Vector3d& point) const;
+  /// 1 - the distance from the centre in units of the half-axes: positive inside the ellipse.
+  double level(const Eigen::Vector3d& point) const;
+  bool contains(const Eigen::Vector3d& point) const { return level(point) >= 0.0; }
   /// Distance from the centre in units of the half-axes, along a surface with this normal at the point: 1 on the rim of
   /// the ellipse. The centre may lie above or below the surface.
   double compute_radius(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;

@@ -104,7 +104,7 @@ HeldMesh hold_mesh(const model::FaceModel& model, const std::vector<plan::FilmLa
   std::vector<std::vector<bool>> open(grid.n_levels());
   for (const plan::FilmLayout& film : films) {
     if (film.wall != plan::FilmWallKind::kTissue) continue;
-    const std::vector<bool> of_film = plan::find_open_nodes(grid, film);
+    const std::vector<bool>& of_film = film.bond.open;
     std::vector<bool>& level = open[film.level];
     if (level.empty()) level.assign(grid.nodes_per_level(), false);
     for (size_t s = 0; s < of_film.size(); ++s) level[s] = level[s] || of_film[s];

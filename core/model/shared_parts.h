@@ -26,7 +26,8 @@ struct SharedParts {
 std::string key_of_tissue(const solid::HexMesh& mesh, const std::vector<solid::ElasticMaterial>& materials,
                           const solid::NodeSupports& supports, const std::vector<solid::WallSpring>& springs);
 std::string key_of_gap(const std::string& tissue_key, const geometry::LayeredGrid& grid,
-                       const coupling::WallNodes& walls, const film::FilmGrid& film);
+                       const coupling::WallNodes& walls, const film::FilmGrid& film,
+                       const std::vector<film::CellPiece>& pieces);
 /// @param has_pressures  the pressures are in the factorisation
 std::string key_of_analysis(const std::string& tissue_key, const std::vector<std::string>& gap_keys,
                             bool has_pressures);

@@ -24,12 +24,14 @@ struct FilmLayout {
   geometry::ScalarField initial_thickness;
   film::WalledSlots walled_slots;  ///< on both sides of walls inside zones
   ConnectiveTissueSpec connective_tissue;
+  std::vector<std::string> remarks;  ///< zones that lie on the film in part, a sentence each
 
   int cell_at(const geometry::ChartPoint& place) const;
   geometry::ChartPoint cell_centre(int cell) const;
 };
 
-/// Decides which cells belong to which zone and where in the tissue the film lies. Field violations are named below
+/// Decides which cells belong to which zone and where in the tissue the film lies. On a face a named region or a disc
+/// with less than 0.98 of its area on the film is remarked upon, and refused below 0.6. Field violations are named below
 /// "films[index]", values in the units of lipofill.v1.Film.
 absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmSpec& spec);
 

@@ -35,11 +35,43 @@ const std::vector<RegionRow>& rows() {
       {"mandibular_angle", {{"gonion", 0.80}, {"cheilion", 0.20}}, 0, 0, 0, "gonion", "cheilion", 34, 20},
       {"buccal", {{"cheilion", 0.58}, {"zygion", 0.24}, {"gonion", 0.18}}, 10, 0, 8, "cheilion", "zygion", 18, 16},
       {"malar", {{"zygion", 0.45}, {"exocanthion", 0.35}, {"cheilion", 0.20}}, 0, 0, 0, "zygion", "cheilion", 22, 14},
-      {"zygomatic", {{"zygion", 0.50}, {"exocanthion", 0.40}, {"cheilion", 0.10}}, 0, 0, 0, "zygion", "exocanthion", 18, 9},
+      {"zygomatic",
+       {{"zygion", 0.50}, {"exocanthion", 0.40}, {"cheilion", 0.10}},
+       0,
+       0,
+       0,
+       "zygion",
+       "exocanthion",
+       18,
+       9},
       {"soof", {{"exocanthion", 0.60}, {"cheilion", 0.25}, {"zygion", 0.15}}, 0, 0, 0, "nasion", "zygion", 11, 6},
-      {"tear_trough", {{"exocanthion", 0.40}, {"nasion", 0.35}, {"cheilion", 0.25}}, 0, 0, 0, "nasion", "zygion", 11, 5},
-      {"midface", {{"exocanthion", 0.35}, {"cheilion", 0.45}, {"subnasale", 0.20}}, 4, 0, 0, "cheilion", "exocanthion", 13, 10},
-      {"nasolabial", {{"cheilion", 0.60}, {"subnasale", 0.25}, {"exocanthion", 0.15}}, 2, 0, 0, "cheilion", "nasion", 15, 6},
+      {"tear_trough",
+       {{"exocanthion", 0.40}, {"nasion", 0.35}, {"cheilion", 0.25}},
+       0,
+       0,
+       0,
+       "nasion",
+       "zygion",
+       11,
+       5},
+      {"midface",
+       {{"exocanthion", 0.35}, {"cheilion", 0.45}, {"subnasale", 0.20}},
+       4,
+       0,
+       0,
+       "cheilion",
+       "exocanthion",
+       13,
+       10},
+      {"nasolabial",
+       {{"cheilion", 0.60}, {"subnasale", 0.25}, {"exocanthion", 0.15}},
+       2,
+       0,
+       0,
+       "cheilion",
+       "nasion",
+       15,
+       6},
       {"upper_lip", {{"subnasale", 0.55}, {"cheilion", 0.45}}, 0, 0, 0, "subnasale", "cheilion", 11, 5},
       {"lower_lip", {{"cheilion", 0.60}, {"pogonion", 0.40}}, 0, 0, 0, "", "", 10, 5},
       {"marionette", {{"cheilion", 0.62}, {"pogonion", 0.20}, {"gonion", 0.18}}, 0, 0, 0, "menton", "cheilion", 12, 6},
@@ -64,8 +96,8 @@ std::set<std::string> landmarks_of(const Region& region) {
 
 /// The region on a head of that size: offsets and half-axes grow with it.
 Region scale_region(Region region, double scale) {
-  for (double* length : {&region.centre.left, &region.centre.up, &region.centre.forward, &region.half_length,
-                         &region.half_width}) {
+  for (double* length :
+       {&region.centre.left, &region.centre.up, &region.centre.forward, &region.half_length, &region.half_width}) {
     *length *= scale;
   }
   return region;
@@ -127,9 +159,9 @@ absl::StatusOr<PlacedRegion> place_region_by_landmarks(const geometry::Landmarks
     if (!landmarks.contains(landmark)) missing.push_back(landmark);
   }
   if (!missing.empty()) {
-    return field_violation("", absl::StrCat("is '", std::string(name), "', which needs the ",
-                                            missing.size() == 1 ? "landmark " : "landmarks ",
-                                            absl::StrJoin(missing, ", ")));
+    return field_violation(
+        "", absl::StrCat("is '", std::string(name), "', which needs the ",
+                         missing.size() == 1 ? "landmark " : "landmarks ", absl::StrJoin(missing, ", ")));
   }
   const auto centre = geometry::resolve_position(region.centre, landmarks, axes);
   if (!centre.ok()) return centre.status();

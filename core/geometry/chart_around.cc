@@ -20,14 +20,14 @@
 namespace lipofill::geometry {
 namespace {
 
-constexpr double kBorderStep = 1e-3;          // [m] between samples of a border
-constexpr double kBorderClearance = 1.5e-3;   // [m]
-constexpr double kObstacleClearance = 2e-3;   // [m]
-constexpr double kObstacleReach = 0.012;      // [m] farther from the skin of the patch an obstacle is none
-constexpr double kDegreesOfTurn = 2.0;        // between the directions tried
-constexpr double kSharedShrink = 0.97;        // a rectangle whose grid leaves the skin is tried again so much smaller
+constexpr double kBorderStep = 1e-3;         // [m] between samples of a border
+constexpr double kBorderClearance = 1.5e-3;  // [m]
+constexpr double kObstacleClearance = 2e-3;  // [m]
+constexpr double kObstacleReach = 0.012;     // [m] farther from the skin of the patch an obstacle is none
+constexpr double kDegreesOfTurn = 2.0;       // between the directions tried
+constexpr double kSharedShrink = 0.97;       // a rectangle whose grid leaves the skin is tried again so much smaller
 constexpr int kMostShrinks = 12;
-constexpr double kUpStep = 2e-3;              // [m]
+constexpr double kUpStep = 2e-3;  // [m]
 
 /// A point to keep clear of, on the patch.
 struct PlacedObstacle {
@@ -252,8 +252,7 @@ absl::Status judge_shares(const SurfaceMesh& mesh, const FlatPatch& patch, const
                                      "region",
                                      footprint.name, kept.share, kSmallestZoneShare, why));
     } else {
-      remarks.push_back(
-          absl::StrFormat("Only %.2f of %s lies on the model%s.", kept.share, footprint.name, why));
+      remarks.push_back(absl::StrFormat("Only %.2f of %s lies on the model%s.", kept.share, footprint.name, why));
     }
   }
   return violations.to_status();

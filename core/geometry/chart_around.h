@@ -24,8 +24,8 @@ struct Obstacle {
 /// What to chart: the footprints with a margin around them.
 struct ChartAroundRequest {
   std::vector<Footprint> footprints;
-  double margin = 0.0;         ///< [m] wanted on every side
-  Eigen::Vector3d up;          ///< eta runs that way, as far as the rectangle allows
+  double margin = 0.0;  ///< [m] wanted on every side
+  Eigen::Vector3d up;   ///< eta runs that way, as far as the rectangle allows
   std::vector<Obstacle> obstacles;
   std::vector<SkinBorder> border;  ///< a value a vertex of the patch
 };

@@ -7,10 +7,10 @@ namespace lipofill::geometry {
 
 /// An ellipse of skin that a model is to cover.
 struct Footprint {
-  std::string name;        ///< for messages
-  std::string field;       ///< of the wire schema that asks for it
-  Eigen::Vector3d centre;  ///< near the skin, or beneath it [m]
-  Eigen::Vector3d along;   ///< unit, of the long axis
+  std::string name;          ///< for messages
+  std::string field;         ///< of the wire schema that asks for it
+  Eigen::Vector3d centre;    ///< near the skin, or beneath it [m]
+  Eigen::Vector3d along;     ///< unit, of the long axis
   double half_length = 0.0;  ///< [m]
   double half_width = 0.0;   ///< [m]
 };

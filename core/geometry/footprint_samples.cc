@@ -31,7 +31,8 @@ std::vector<FootprintSample> sample_footprint(const SurfaceMesh& skin, const Ski
   for (int k = 0; k < kAnglesOfRim; ++k) add(1.0, 2.0 * std::numbers::pi * k / kAnglesOfRim, true);
   for (int ring = 0; ring < kRings; ++ring) {
     const double radius = std::sqrt((ring + 0.5) / kRings);
-    for (int k = 0; k < kAnglesOfRing; ++k) add(radius, 2.0 * std::numbers::pi * (k + 0.5 * (ring % 2)) / kAnglesOfRing, false);
+    for (int k = 0; k < kAnglesOfRing; ++k)
+      add(radius, 2.0 * std::numbers::pi * (k + 0.5 * (ring % 2)) / kAnglesOfRing, false);
   }
   return samples;
 }

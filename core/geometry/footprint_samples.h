@@ -11,8 +11,8 @@ namespace lipofill::geometry {
 
 /// A point of a footprint, brought to the skin.
 struct FootprintSample {
-  SurfacePoint skin;     ///< the nearest place
-  bool is_beyond = false;  ///< it lies beyond a border of the skin
+  SurfacePoint skin;        ///< the nearest place
+  bool is_beyond = false;   ///< it lies beyond a border of the skin
   bool is_outline = false;  ///< on the rim of the ellipse; the others stand for equal shares of it
 };
 

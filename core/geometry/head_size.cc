@@ -68,9 +68,8 @@ std::optional<LandmarkDistance> find_typical_distance(const Landmarks& landmarks
   }
   if (distances.size() < kFewestDistances) return std::nullopt;
   const auto middle = distances.begin() + static_cast<long>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end(), [](const auto& a, const auto& b) {
-    return a.found * b.usual < b.found * a.usual;
-  });
+  std::nth_element(distances.begin(), middle, distances.end(),
+                   [](const auto& a, const auto& b) { return a.found * b.usual < b.found * a.usual; });
   return *middle;
 }
 

@@ -62,10 +62,11 @@ void check_pairs(const Landmarks& landmarks, const HeadAxes& axes, FieldViolatio
     if (left == nullptr || right == nullptr) continue;
     const double apart = (*left - *right).dot(axes.left);
     if (apart > 0.0) continue;
-    violations.add(field_of(absl::StrCat(name, "_left")),
-                   absl::StrFormat("lies %.1f mm to the subject's right of %s_right: left and right are swapped, or the "
-                                   "axes are wrong",
-                                   -apart * 1e3, name));
+    violations.add(
+        field_of(absl::StrCat(name, "_left")),
+        absl::StrFormat("lies %.1f mm to the subject's right of %s_right: left and right are swapped, or the "
+                        "axes are wrong",
+                        -apart * 1e3, name));
   }
 }
 

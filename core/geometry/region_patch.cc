@@ -197,9 +197,9 @@ void fill_small_holes(RegionPatch& patch) {
 
 absl::Status check_size(const SurfaceMesh& patch) {
   if (patch.n_vertices() <= kMaxPatchVertices) return absl::OkStatus();
-  return absl::FailedPreconditionError(
-      absl::StrCat("the scan has ", patch.n_vertices(), " vertices around the region, must have at most ",
-                   kMaxPatchVertices, ": decimate it first"));
+  return absl::FailedPreconditionError(absl::StrCat("the scan has ", patch.n_vertices(),
+                                                    " vertices around the region, must have at most ",
+                                                    kMaxPatchVertices, ": decimate it first"));
 }
 
 /// How far each vertex lies beyond the nearest disc; not positive within.

@@ -79,7 +79,8 @@ Ball find_ball(const std::array<Eigen::Vector3d, 4>& corners) {
 /// The ball around the footprints and their margin.
 Ball find_ball(const std::vector<Footprint>& footprints, double margin) {
   Ball ball;
-  for (const Footprint& footprint : footprints) ball.centre += footprint.centre / static_cast<double>(footprints.size());
+  for (const Footprint& footprint : footprints)
+    ball.centre += footprint.centre / static_cast<double>(footprints.size());
   for (const Footprint& footprint : footprints) {
     const double reach = std::hypot(footprint.half_length + margin, footprint.half_width + margin);
     ball.radius = std::max(ball.radius, (footprint.centre - ball.centre).norm() + reach);
@@ -100,8 +101,9 @@ std::vector<int> find_triangles_within(const SurfaceMesh& mesh, const Ball& ball
 
 std::string explain_off_skin(double to_skin, double to_scan, bool is_beyond) {
   if (is_beyond) {
-    return absl::StrFormat("lies %.1f mm beyond a border of the skin, must be at most %.0f mm from it: the scan ends there",
-                           to_skin * 1e3, kFarthestFromSkin * 1e3);
+    return absl::StrFormat(
+        "lies %.1f mm beyond a border of the skin, must be at most %.0f mm from it: the scan ends there", to_skin * 1e3,
+        kFarthestFromSkin * 1e3);
   }
   if (to_scan <= kFarthestFromSkin) {
     return absl::StrFormat(
@@ -139,7 +141,7 @@ absl::StatusOr<std::array<SurfacePoint, 4>> project_corners(const SurfaceMesh& s
     corners[k] = *reached;
     if (corners[k].distance <= kFarCorner) continue;
     cautions.push_back(absl::StrFormat("scan_region.corners[%d] lay %.1f mm from the skin and was moved onto it.", k,
-                                      corners[k].distance * 1e3));
+                                       corners[k].distance * 1e3));
   }
   const absl::Status status = violations.to_status();
   if (!status.ok()) return status;
@@ -207,11 +209,11 @@ absl::Status reach_skin(const SurfaceMesh& skin, std::vector<Footprint>& footpri
                                      "ends there; take a scan that reaches farther",
                                      footprint.name, nearest.distance * 1e3, in_mm(nearest.position)));
     } else {
-      violations.add(footprint.field,
-                     absl::StrFormat("is '%s', whose middle lies %.1f mm from the outer skin, must be at most %.0f mm "
-                                     "above it or %.0f mm beneath; check its landmarks",
-                                     footprint.name, nearest.distance * 1e3, kFarthestFromSkin * 1e3,
-                                     kDeepestUnderSkin * 1e3));
+      violations.add(
+          footprint.field,
+          absl::StrFormat("is '%s', whose middle lies %.1f mm from the outer skin, must be at most %.0f mm "
+                          "above it or %.0f mm beneath; check its landmarks",
+                          footprint.name, nearest.distance * 1e3, kFarthestFromSkin * 1e3, kDeepestUnderSkin * 1e3));
     }
   }
   return violations.to_status();

@@ -17,7 +17,7 @@ struct ScanRegion {
   /// What to chart where the region follows from footprints, their centres on the skin; the patch has no corners then.
   std::optional<ChartAroundRequest> around;
   HeadAxes axes;
-  std::vector<int> cleaned_of_scan;  ///< cleaned vertex of each vertex of the scan, -1 where none
+  std::vector<int> cleaned_of_scan;   ///< cleaned vertex of each vertex of the scan, -1 where none
   std::vector<std::string> remarks;   ///< what cleaning did, a sentence each
   std::vector<std::string> cautions;  ///< what is unusual about scan, landmarks and region, a sentence each
 };

@@ -153,7 +153,8 @@ absl::StatusOr<ChartPoint> locate_in_chart(const FaceGeometry& geometry, const S
     SkinFoot foot = projection.project(*position);
     if (foot.distance > kFarthestFromSkin && std::holds_alternative<LandmarkPoint>(point)) {
       // A mean of landmarks may lie deep under the skin.
-      if (const auto reached = SkinReach(projection.facets()).reach(*position)) foot = projection.project(reached->position);
+      if (const auto reached = SkinReach(projection.facets()).reach(*position))
+        foot = projection.project(reached->position);
     }
     place = foot.place;
     const bool over_the_region = std::max(std::abs(place.xi - 0.5), std::abs(place.eta - 0.5)) <= 0.5 + kRimTolerance;

@@ -43,8 +43,9 @@ absl::Status check_quadrilateral(const Quadrilateral& q) {
     return field_violation(kCorners, "make sides that cross; they must go round the region in order");
   }
   if (compute_signed_area(q[0], q[1], q[2]) + compute_signed_area(q[0], q[2], q[3]) < 0.0) {
-    return field_violation(kCorners, "run clockwise seen from outside; they must run anticlockwise (corners taken over from the "
-                                     "other side of a face run the other way round)");
+    return field_violation(kCorners,
+                           "run clockwise seen from outside; they must run anticlockwise (corners taken over from the "
+                           "other side of a face run the other way round)");
   }
   for (size_t k = 0; k < 4; ++k) {
     const Eigen::Vector2d to_next = (q[(k + 1) % 4] - q[k]).normalized();

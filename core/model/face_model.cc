@@ -131,7 +131,8 @@ absl::Status with_advice(const absl::Status& status, const geometry::FaceGeometr
   std::string text(status.message());
   if (face.rms_rider_distance > geometry::kRoughScan) {
     text = absl::StrFormat(
-        "the scan is noisy: its vertices lie %.2f mm (rms) off the smoothed skin, %.2f mm at most; smooth it first. (%s)",
+        "the scan is noisy: its vertices lie %.2f mm (rms) off the smoothed skin, %.2f mm at most; smooth it first. "
+        "(%s)",
         face.rms_rider_distance * kMillimetresPerMetre, face.max_rider_distance * kMillimetresPerMetre, text);
   }
   if (thickness.bone) text += "; or raise smoothing_mm or lower max_thickness_mm of the layer down to the bone";
@@ -141,8 +142,7 @@ absl::Status with_advice(const absl::Status& status, const geometry::FaceGeometr
 /// Everything wrong with what the region is to hold is told before the scan is worked on.
 void check_around(const FaceModelSpec& spec, FieldViolations& violations) {
   if (!spec.around) return;
-  const absl::Status found =
-      find_footprints(std::get<geometry::ScanRegionSpec>(spec.region), *spec.around).status();
+  const absl::Status found = find_footprints(std::get<geometry::ScanRegionSpec>(spec.region), *spec.around).status();
   violations.absorb(absl::IsInvalidArgument(found) ? "" : "scan_region.landmarks_mm", found);
 }
 

@@ -150,9 +150,10 @@ void judge_share(const model::FaceModel& model, const FilmSpec& spec, const Zone
   if (!ellipse) return;
   const double share = compute_zone_share(model.geometry, *ellipse, spec.extent);
   if (share < geometry::kSmallestZoneShare) {
-    violations.add(field, absl::StrFormat("'%s' lies on the model with %.2f of its area, must be at least %.1f: make the "
-                                          "model's region larger or move it, or the zone smaller",
-                                          zone.name, share, geometry::kSmallestZoneShare));
+    violations.add(field,
+                   absl::StrFormat("'%s' lies on the model with %.2f of its area, must be at least %.1f: make the "
+                                   "model's region larger or move it, or the zone smaller",
+                                   zone.name, share, geometry::kSmallestZoneShare));
   } else if (share < geometry::kWholeZoneShare) {
     remarks.push_back(absl::StrFormat("Zone %s lies on the model with %.2f of its area.", zone.name, share));
   }

@@ -41,9 +41,8 @@ double compute_zone_share(const geometry::FaceGeometry& face, const anatomy::Pla
     const double radius = std::sqrt((ring + 0.5) / kRings);
     for (int k = 0; k < kAngles; ++k) {
       const double angle = 2.0 * std::numbers::pi * (k + 0.5 * (ring % 2)) / kAngles;
-      const Eigen::Vector3d point =
-          region.centre + radius * (region.half_length * std::cos(angle) * along +
-                                    region.half_width * std::sin(angle) * across);
+      const Eigen::Vector3d point = region.centre + radius * (region.half_length * std::cos(angle) * along +
+                                                              region.half_width * std::sin(angle) * across);
       held += holds(box, projection.project(point).place);
     }
   }

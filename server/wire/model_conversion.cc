@@ -40,9 +40,8 @@ model::AroundSpec read_around(const v1::Around& message, const FieldReader& read
   for (int i = 0; i < message.discs_size(); ++i) {
     const v1::SkinDisc& disc = message.discs(i);
     const FieldReader below = reader.below("discs", i);
-    around.discs.push_back(
-        {read_skin_point(disc.centre(), below.below("centre")),
-         below.required(disc.has_radius_mm(), disc.radius_mm(), kMetresPerMillimetre, "radius_mm")});
+    around.discs.push_back({read_skin_point(disc.centre(), below.below("centre")),
+                            below.required(disc.has_radius_mm(), disc.radius_mm(), kMetresPerMillimetre, "radius_mm")});
   }
   if (message.has_margin_mm()) around.margin = message.margin_mm() * kMetresPerMillimetre;
   return around;

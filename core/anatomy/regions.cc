@@ -76,9 +76,9 @@ const std::vector<RegionRow>& rows() {
       {"lower_lip", {{"cheilion", 0.60}, {"pogonion", 0.40}}, 0, 0, 0, "", "", 10, 5},
       {"marionette", {{"cheilion", 0.62}, {"pogonion", 0.20}, {"gonion", 0.18}}, 0, 0, 0, "menton", "cheilion", 12, 6},
       {"chin", {{"pogonion", 0.70}, {"cheilion", 0.30}}, 0, 0, 0, "pogonion", "cheilion", 16, 12},
-      {"jawline", {{"gonion", 0.45}, {"menton", 0.30}, {"cheilion", 0.25}}, 0, 0, 0, "gonion", "menton", 24, 9},
-      {"submaxillary", {{"gonion", 0.50}, {"menton", 0.35}, {"cheilion", 0.15}}, 0, 0, 0, "gonion", "menton", 24, 12},
-      {"temple", {{"zygion", 0.45}, {"exocanthion", 0.55}}, 0, 18, -6, "zygion", "exocanthion", 18, 16},
+      {"jawline", {{"gonion", 0.45}, {"menton", 0.25}, {"cheilion", 0.30}}, 9, 0, 2, "gonion", "menton", 22, 9},
+      {"submaxillary", {{"gonion", 0.45}, {"menton", 0.20}, {"cheilion", 0.35}}, 7, -10, 0, "gonion", "menton", 20, 11},
+      {"temple", {{"zygion", 0.30}, {"exocanthion", 0.70}}, 0, 18, -2, "zygion", "exocanthion", 16, 14},
       {"forehead", {{"exocanthion", 0.60}, {"nasion", 0.40}}, 0, 28, 0, "", "", 18, 11},
   };
   return table;

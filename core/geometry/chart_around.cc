@@ -15,6 +15,7 @@
 #include "core/geometry/conformal_map.h"
 #include "core/geometry/flat_region.h"
 #include "core/geometry/footprint_samples.h"
+#include "core/geometry/planar_locator.h"
 #include "core/geometry/surface_topology.h"
 
 namespace lipofill::geometry {

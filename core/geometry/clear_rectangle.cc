@@ -6,6 +6,9 @@
 namespace lipofill::geometry {
 namespace {
 
+/// A side that has moved to its distance from an obstacle is not too close to it.
+constexpr double kRoundOff = 1e-9;
+
 /// A side that moves in: 0 low x, 1 high x, 2 low y, 3 high y.
 struct Move {
   int side = -1;
@@ -20,8 +23,8 @@ double& side_of(Rectangle& rectangle, int side) {
 
 bool is_too_close(const Rectangle& rectangle, const ObstaclePoint& obstacle) {
   const Eigen::Array2d p = obstacle.position.array();
-  return (p > rectangle.low.array() - obstacle.clearance).all() &&
-         (p < rectangle.high.array() + obstacle.clearance).all();
+  const double clearance = obstacle.clearance - kRoundOff;
+  return (p > rectangle.low.array() - clearance).all() && (p < rectangle.high.array() + clearance).all();
 }
 
 int count_lost(const Rectangle& before, const Rectangle& after, const std::vector<Eigen::Vector2d>& content) {

@@ -129,7 +129,7 @@ absl::StatusOr<std::array<SurfacePoint, 4>> project_corners(const SurfaceMesh& s
     const bool is_beyond = borders.is_beyond(positions[k], corners[k]);
     std::optional<SurfacePoint> reached = corners[k];
     if (corners[k].distance > kFarthestFromSkin) {
-      const bool may_be_deep = std::holds_alternative<LandmarkPoint>(spec.corners[k]) && !is_beyond;
+      const bool may_be_deep = std::holds_alternative<LandmarkPoint>(spec.corners[k]);
       reached = may_be_deep ? reach.reach(positions[k]) : std::nullopt;
     }
     if (!reached) {
@@ -198,8 +198,7 @@ absl::Status reach_skin(const SurfaceMesh& skin, std::vector<Footprint>& footpri
   for (Footprint& footprint : footprints) {
     const SurfacePoint nearest = reach.find_nearest(footprint.centre);
     const bool is_beyond = borders.is_beyond(footprint.centre, nearest);
-    const auto reached = is_beyond ? std::nullopt : reach.reach(footprint.centre);
-    if (reached) {
+    if (const auto reached = reach.reach(footprint.centre)) {
       footprint.centre = reached->position;
     } else if (is_beyond && nearest.distance <= footprint.half_width) {
       footprint.centre = nearest.position;

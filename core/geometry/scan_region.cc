@@ -8,7 +8,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/base/field_violations.h"
-#include "core/geometry/flat_region.h"
 #include "core/geometry/landmark_checks.h"
 #include "core/geometry/outer_skin.h"
 #include "core/geometry/skin_border.h"
@@ -16,6 +15,7 @@
 #include "core/geometry/skin_reach.h"
 #include "core/geometry/surface_cleaning.h"
 #include "core/geometry/surface_topology.h"
+#include "core/geometry/zone_patch.h"
 
 namespace lipofill::geometry {
 namespace {
@@ -62,41 +62,12 @@ absl::Status check_sides(const std::array<Eigen::Vector3d, 4>& corners) {
   return violations.to_status();
 }
 
-/// A ball in which the skin of a region lies.
-struct Ball {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double radius = 0.0;  ///< [m]
-};
-
 /// The ball around the corners, larger than the patch will need.
 Ball find_ball(const std::array<Eigen::Vector3d, 4>& corners) {
   Ball ball{0.25 * (corners[0] + corners[1] + corners[2] + corners[3])};
   for (const Eigen::Vector3d& corner : corners) ball.radius = std::max(ball.radius, (corner - ball.centre).norm());
   ball.radius = 2.0 * ball.radius + 0.02;
   return ball;
-}
-
-/// The ball around the footprints and their margin.
-Ball find_ball(const std::vector<Footprint>& footprints, double margin) {
-  Ball ball;
-  for (const Footprint& footprint : footprints)
-    ball.centre += footprint.centre / static_cast<double>(footprints.size());
-  for (const Footprint& footprint : footprints) {
-    const double reach = std::hypot(footprint.half_length + margin, footprint.half_width + margin);
-    ball.radius = std::max(ball.radius, (footprint.centre - ball.centre).norm() + reach);
-  }
-  return ball;
-}
-
-std::vector<int> find_triangles_within(const SurfaceMesh& mesh, const Ball& ball) {
-  std::vector<int> candidates;
-  for (int t = 0; t < mesh.n_triangles(); ++t) {
-    const auto& triangle = mesh.triangles[t];
-    const bool near = std::any_of(triangle.begin(), triangle.end(),
-                                  [&](int v) { return (mesh.points.col(v) - ball.centre).norm() <= ball.radius; });
-    if (near) candidates.push_back(t);
-  }
-  return candidates;
 }
 
 std::string explain_off_skin(double to_skin, double to_scan, bool is_beyond) {
@@ -154,15 +125,6 @@ void turn_right_side_out(SurfaceMesh& mesh, std::vector<std::string>& remarks) {
   remarks.push_back("The surface was inside out and has been turned.");
 }
 
-/// The triangles of outer skin in a ball as a surface of their own.
-SubSurface extract_outer_skin(const SurfaceMesh& mesh, const RayTree& rays, const Ball& ball) {
-  const std::vector<int> candidates = find_triangles_within(mesh, ball);
-  const std::vector<bool> outer = find_outer_skin(mesh, find_neighbours(mesh).across, rays, candidates);
-  std::vector<int> skin;
-  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(skin), [&](int t) { return outer[t]; });
-  return extract_triangles(mesh, skin);
-}
-
 /// What the steps of finding a region share.
 struct Cleaned {
   CleanedSurface surface;
@@ -177,7 +139,7 @@ absl::StatusOr<RegionPatch> find_patch_between_corners(const ScanRegionSpec& spe
   const absl::Status sides = check_sides(*positions);
   if (!sides.ok()) return sides;
   const SurfaceMesh& mesh = scan.surface.mesh;
-  const SubSurface skin = extract_outer_skin(mesh, RayTree(mesh), find_ball(*positions));
+  const SubSurface skin = extract_outer_skin(mesh, find_ball(*positions));
   if (skin.mesh.triangles.empty()) {
     return field_violation("scan_region.corners", "have no outer skin of the scan near them");
   }
@@ -186,80 +148,6 @@ absl::StatusOr<RegionPatch> find_patch_between_corners(const ScanRegionSpec& spe
   if (const absl::Status go = report(progress, 0.5, "cutting the region"); !go.ok()) return go;
   auto patch = cut_region_patch(skin.mesh, *corners);
   if (!patch.ok()) return patch.status();
-  for (int& v : patch->whole_of_vertex) v = v < 0 ? -1 : skin.whole_of_vertex[v];
-  return patch;
-}
-
-/// Moves the centres of the footprints onto the outer skin.
-absl::Status reach_skin(const SurfaceMesh& skin, std::vector<Footprint>& footprints) {
-  const SkinReach reach(skin);
-  const BorderFinder borders(skin);
-  FieldViolations violations;
-  for (Footprint& footprint : footprints) {
-    const SurfacePoint nearest = reach.find_nearest(footprint.centre);
-    const bool is_beyond = borders.is_beyond(footprint.centre, nearest);
-    if (const auto reached = reach.reach(footprint.centre)) {
-      footprint.centre = reached->position;
-    } else if (is_beyond && nearest.distance <= footprint.half_width) {
-      footprint.centre = nearest.position;
-    } else if (is_beyond) {
-      violations.add(footprint.field,
-                     absl::StrFormat("is '%s', whose middle lies %.1f mm beyond a border of the skin near %s: the scan "
-                                     "ends there; take a scan that reaches farther",
-                                     footprint.name, nearest.distance * 1e3, in_mm(nearest.position)));
-    } else {
-      violations.add(
-          footprint.field,
-          absl::StrFormat("is '%s', whose middle lies %.1f mm from the outer skin, must be at most %.0f mm "
-                          "above it or %.0f mm beneath; check its landmarks",
-                          footprint.name, nearest.distance * 1e3, kFarthestFromSkin * 1e3, kDeepestUnderSkin * 1e3));
-    }
-  }
-  return violations.to_status();
-}
-
-/// The kind of border at each vertex of a patch.
-std::vector<SkinBorder> find_borders(const SurfaceMesh& scan, const SubSurface& skin, const RegionPatch& patch) {
-  const std::vector<bool> ends = find_border_vertices(scan);
-  const std::vector<bool> folds = find_border_vertices(skin.mesh);
-  std::vector<SkinBorder> borders;
-  for (const int v : patch.whole_of_vertex) {
-    if (v < 0) {
-      borders.push_back(SkinBorder::kNone);
-    } else {
-      borders.push_back(ends[skin.whole_of_vertex[v]] ? SkinBorder::kScanEnd
-                        : folds[v]                    ? SkinBorder::kFold
-                                                      : SkinBorder::kNone);
-    }
-  }
-  return borders;
-}
-
-/// How much larger than what it must hold a patch is cut: the skin curves, and edges are longer than the way.
-constexpr double kPatchSpare = 1.3;
-constexpr double kPatchSpareLength = 0.015;  // [m]
-
-absl::StatusOr<RegionPatch> find_patch_around_footprints(const ScanRegionSpec& spec, const Cleaned& scan,
-                                                         const Progress& progress, ChartAroundRequest& request) {
-  request.footprints = spec.footprints;
-  request.margin = spec.margin;
-  request.up = scan.axes.up;
-  request.obstacles = find_face_obstacles(spec.landmarks, scan.axes);
-  const SurfaceMesh& mesh = scan.surface.mesh;
-  const Ball ball = find_ball(request.footprints, request.margin);
-  const double radius = kPatchSpare * ball.radius + kPatchSpareLength;
-  const SubSurface skin = extract_outer_skin(mesh, RayTree(mesh), {ball.centre, radius + kDeepestUnderSkin});
-  if (skin.mesh.triangles.empty()) {
-    return field_violation(request.footprints.front().field, "has no outer skin of the scan near it");
-  }
-  if (const absl::Status reached = reach_skin(skin.mesh, request.footprints); !reached.ok()) return reached;
-
-  if (const absl::Status go = report(progress, 0.5, "cutting the region"); !go.ok()) return go;
-  const SurfacePoint middle =
-      SurfaceLocator(skin.mesh).find_nearest(find_ball(request.footprints, request.margin).centre);
-  auto patch = cut_patch_around(skin.mesh, {{middle, radius}});
-  if (!patch.ok()) return patch.status();
-  request.border = find_borders(mesh, skin, *patch);
   for (int& v : patch->whole_of_vertex) v = v < 0 ? -1 : skin.whole_of_vertex[v];
   return patch;
 }
@@ -305,7 +193,7 @@ absl::StatusOr<ScanRegion> find_scan_region(const ScanRegionSpec& spec, const Pr
 
   if (const absl::Status go = report(progress, 0.2, "finding the outer skin"); !go.ok()) return go;
   if (!spec.footprints.empty()) region.around.emplace();
-  auto patch = region.around ? find_patch_around_footprints(spec, scan, progress, *region.around)
+  auto patch = region.around ? find_patch_around(spec, scan.surface.mesh, scan.axes, progress, *region.around)
                              : find_patch_between_corners(spec, scan, locator, progress, region.cautions);
   if (!patch.ok()) return patch.status();
   region.patch = *std::move(patch);

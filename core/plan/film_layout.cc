@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "core/anatomy/regions.h"
 #include "core/base/field_violations.h"
 #include "core/base/units.h"
-#include "core/geometry/footprint.h"
 #include "core/plan/film_walls.h"
 #include "core/plan/zone_share.h"
 
@@ -128,37 +125,6 @@ absl::StatusOr<Membership> make_membership(const model::FaceModel& model, const 
   });
 }
 
-/// The ellipse of skin that a zone asks for, where it asks for one.
-std::optional<anatomy::PlacedRegion> find_ellipse(const geometry::FaceGeometry& face, const ZoneSpec& zone) {
-  if (const auto* named = std::get_if<NamedRegion>(&zone.shape)) {
-    const auto placed = anatomy::place_region(face, named->name);
-    return placed.ok() ? std::optional(*placed) : std::nullopt;
-  }
-  const auto* disc = std::get_if<Disc>(&zone.shape);
-  if (disc == nullptr) return std::nullopt;
-  const auto centre = geometry::locate_in_chart(face, disc->centre);
-  if (!centre.ok()) return std::nullopt;
-  return anatomy::PlacedRegion{geometry::skin_position(face.grid, *centre), face.axes.up, disc->radius, disc->radius};
-}
-
-/// A zone on a face that lies outside the film in part is not the zone that was asked for. On a square a quarter of a
-/// disc is a usual way to use its symmetry.
-void judge_share(const model::FaceModel& model, const FilmSpec& spec, const ZoneSpec& zone, const std::string& field,
-                 FieldViolations& violations, std::vector<std::string>& remarks) {
-  if (model.is_square) return;
-  const auto ellipse = find_ellipse(model.geometry, zone);
-  if (!ellipse) return;
-  const double share = compute_zone_share(model.geometry, *ellipse, spec.extent);
-  if (share < geometry::kSmallestZoneShare) {
-    violations.add(field,
-                   absl::StrFormat("'%s' lies on the model with %.2f of its area, must be at least %.1f: make the "
-                                   "model's region larger or move it, or the zone smaller",
-                                   zone.name, share, geometry::kSmallestZoneShare));
-  } else if (share < geometry::kWholeZoneShare) {
-    remarks.push_back(absl::StrFormat("Zone %s lies on the model with %.2f of its area.", zone.name, share));
-  }
-}
-
 std::vector<int> assign_zones(const model::FaceModel& model, const FilmSpec& spec, FieldViolations& violations,
                               std::vector<std::string>& remarks) {
   std::vector<int> zone_of_slot(static_cast<size_t>(spec.n_xi) * spec.n_eta, -1);
@@ -172,7 +138,7 @@ std::vector<int> assign_zones(const model::FaceModel& model, const FilmSpec& spe
     const auto contains = make_membership(model, spec.zones[z]);
     violations.absorb(field, contains.status());
     if (!contains.ok()) continue;
-    judge_share(model, spec, spec.zones[z], field, violations, remarks);
+    judge_zone_share(model, spec, spec.zones[z], field, violations, remarks);
     int claimed = 0;
     for (int slot = 0; slot < static_cast<int>(zone_of_slot.size()); ++slot) {
       if (zone_of_slot[slot] >= 0 || !(*contains)(slot_centre(spec, slot))) continue;

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "absl/strings/str_format.h"
+#include "core/geometry/footprint.h"
 #include "core/geometry/skin_projection.h"
 
 namespace lipofill::plan {
@@ -28,6 +31,19 @@ bool holds(const geometry::ChartBox& box, const geometry::ChartPoint& p) {
          p.eta <= box.eta_max + kRoundOff;
 }
 
+/// The ellipse of skin that a zone asks for, where it asks for one.
+std::optional<anatomy::PlacedRegion> find_ellipse(const geometry::FaceGeometry& face, const ZoneSpec& zone) {
+  if (const auto* named = std::get_if<NamedRegion>(&zone.shape)) {
+    const auto placed = anatomy::place_region(face, named->name);
+    return placed.ok() ? std::optional(*placed) : std::nullopt;
+  }
+  const auto* disc = std::get_if<Disc>(&zone.shape);
+  if (disc == nullptr) return std::nullopt;
+  const auto centre = geometry::locate_in_chart(face, disc->centre);
+  if (!centre.ok()) return std::nullopt;
+  return anatomy::PlacedRegion{geometry::skin_position(face.grid, *centre), face.axes.up, disc->radius, disc->radius};
+}
+
 }  // namespace
 
 double compute_zone_share(const geometry::FaceGeometry& face, const anatomy::PlacedRegion& region,
@@ -47,6 +63,22 @@ double compute_zone_share(const geometry::FaceGeometry& face, const anatomy::Pla
     }
   }
   return static_cast<double>(held) / (kRings * kAngles);
+}
+
+void judge_zone_share(const model::FaceModel& model, const FilmSpec& spec, const ZoneSpec& zone,
+                      const std::string& field, FieldViolations& violations, std::vector<std::string>& remarks) {
+  if (model.is_square) return;
+  const auto ellipse = find_ellipse(model.geometry, zone);
+  if (!ellipse) return;
+  const double share = compute_zone_share(model.geometry, *ellipse, spec.extent);
+  if (share < geometry::kSmallestZoneShare) {
+    violations.add(field,
+                   absl::StrFormat("'%s' lies on the model with %.2f of its area, must be at least %.1f: make the "
+                                   "model's region larger or move it, or the zone smaller",
+                                   zone.name, share, geometry::kSmallestZoneShare));
+  } else if (share < geometry::kWholeZoneShare) {
+    remarks.push_back(absl::StrFormat("Zone %s lies on the model with %.2f of its area.", zone.name, share));
+  }
 }
 
 }  // namespace lipofill::plan

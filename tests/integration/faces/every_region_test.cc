@@ -113,10 +113,10 @@ Outcome carry_out(const geometry::ScanRegionSpec& face, const std::string& regio
                                                                               : "FAILED";
   Outcome outcome{state, (*simulation)->reason(), (*simulation)->remarks()};
   if (outcome.has_come_to_rest()) {
-    outcome.reason = absl::StrFormat(
-        "%.2f mL, %.2f mm, %.2f kPa, scaled Jacobian %.2f of %.2f at rest, %.1f cm2", report.injected * 1e6,
-        report.skin_max_displacement * 1e3, report.max_pressure * 1e-3, report.min_scaled_jacobian,
-        (*model)->geometry.grid.min_scaled_jacobian, (*model)->geometry.skin_area * 1e4);
+    outcome.reason = absl::StrFormat("%.2f mL, %.2f mm, %.2f kPa, scaled Jacobian %.2f of %.2f at rest, %.1f cm2",
+                                     report.injected * 1e6, report.skin_max_displacement * 1e3,
+                                     report.max_pressure * 1e-3, report.min_scaled_jacobian,
+                                     (*model)->geometry.grid.min_scaled_jacobian, (*model)->geometry.skin_area * 1e4);
   }
   return outcome;
 }

@@ -57,7 +57,8 @@ TEST(ChartAround, GivesUpMarginBesideABorderAndSaysSo) {
   const auto around = chart_around(patch, make_request(patch, make_footprint(0.040, 0.0)), 20, 16);
   ASSERT_TRUE(around.ok()) << around.status();
   EXPECT_NEAR(around->corners[1].x(), kHalf - 1.5e-3, 0.3e-3);
-  EXPECT_THAT(around->remarks, ElementsAre(HasSubstr("3.5 mm of skin around them in place of 12.0: a border of the scan")));
+  EXPECT_THAT(around->remarks,
+              ElementsAre(HasSubstr("3.5 mm of skin around them in place of 12.0: a border of the scan")));
 }
 
 TEST(ChartAround, AZoneThatTheScanCutsIsRemarkedUpon) {
@@ -75,7 +76,8 @@ TEST(ChartAround, AZoneOfWhichTooLittleIsLeftIsRefusedWithTheBorder) {
   const RegionPatch patch = make_patch();
   const auto around = chart_around(patch, make_request(patch, make_footprint(0.059, 0.0)), 20, 16);
   EXPECT_EQ(around.status().code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(std::string(around.status().message()), HasSubstr("must be at least 0.6: a border of the scan lies near"));
+  EXPECT_THAT(std::string(around.status().message()),
+              HasSubstr("must be at least 0.6: a border of the scan lies near"));
 }
 
 TEST(ChartAround, KeepsClearOfObstacles) {

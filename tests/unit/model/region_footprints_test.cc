@@ -122,7 +122,8 @@ TEST(Around, ItGoesAroundADiscAsWell) {
 TEST(Around, AScanThatEndsInTheZoneIsRemarkedUponAndThenRefused) {
   const auto some = build_face_model(make_spec(cut_behind(sample_face(), 0.026), {"masseter_left"}), nullptr);
   ASSERT_TRUE(some.ok()) << some.status();
-  EXPECT_THAT((*some)->geometry.cautions, Contains(HasSubstr("of masseter_left lies on the model: a border of the scan")));
+  EXPECT_THAT((*some)->geometry.cautions,
+              Contains(HasSubstr("of masseter_left lies on the model: a border of the scan")));
   const auto little = build_face_model(make_spec(cut_behind(sample_face(), 0.044), {"masseter_left"}), nullptr);
   EXPECT_EQ(little.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(little.status().message()), HasSubstr("a border of the scan"));

@@ -48,6 +48,7 @@ absl::Status draw_here(const Options& options) {
   }
   request.caption = kNotAMedicalDevice;
   request.figures = figures_of_folder(options.result);
+  request.remarks = remarks_of_folder(options.result);
   request.mesh = last_frame_file(options.result, "scan");
   if (request.mesh.empty()) request.mesh = last_frame_file(options.result, "skin");
   if (request.mesh.empty())

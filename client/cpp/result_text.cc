@@ -93,6 +93,7 @@ std::string summary_text(const std::string& plan, const v1::Simulation& simulati
     absl::StrAppendFormat(&text, "  zone %-24s %.2f mL, %.2f kPa mean, %.2f mm at most\n", zone.name(),
                           zone.volume_ml(), zone.mean_pressure_pa() / 1e3, zone.max_thickness_mm());
   }
+  for (const std::string& remark : s.remarks()) absl::StrAppend(&text, "  remark       ", remark, "\n");
   return absl::StrCat(text, kNotAMedicalDevice, "\n");
 }
 

@@ -129,7 +129,7 @@ absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmS
     check_coarseness("n_eta", spec.extent.eta_max - spec.extent.eta_min, spec.n_eta, model.geometry.grid.n_eta,
                      violations);
   }
-  const PlacedZones zones = place_zones(model, spec, violations);
+  const PlacedZones zones = place_zones(model, spec, violations, layout.remarks);
   if (!violations.empty()) return violations.to_status();
 
   layout.name = spec.name;

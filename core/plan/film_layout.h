@@ -28,12 +28,14 @@ struct FilmLayout {
   ConnectiveTissueSpec connective_tissue;
   std::vector<film::CellPiece> pieces;  ///< on the quadrilaterals of the tissue, kTissue only
   ZoneBond bond;                        ///< of the two walls, kTissue only
+  std::vector<std::string> remarks;  ///< zones that lie on the film in part, a sentence each
 
   int cell_at(const geometry::ChartPoint& place) const;
   geometry::ChartPoint cell_centre(int cell) const;
 };
 
-/// Decides which cells belong to which zone and where in the tissue the film lies. Field violations are named below
+/// Decides which cells belong to which zone and where in the tissue the film lies. On a face a named region or a disc
+/// with less than 0.98 of its area on the film is remarked upon, and refused below 0.6. Field violations are named below
 /// "films[index]", values in the units of lipofill.v1.Film.
 absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmSpec& spec);
 

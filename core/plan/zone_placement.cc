@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/plan/zone_levels.h"
+#include "core/plan/zone_share.h"
 
 namespace lipofill::plan {
 namespace {
@@ -58,7 +59,8 @@ Level least_of(const FilmSpec& spec, const std::vector<Level>& levels) {
   };
 }
 
-std::vector<Shape> make_shapes(const model::FaceModel& model, const FilmSpec& spec, FieldViolations& violations) {
+std::vector<Shape> make_shapes(const model::FaceModel& model, const FilmSpec& spec, FieldViolations& violations,
+                               std::vector<std::string>& remarks) {
   std::vector<Shape> shapes;
   std::set<std::string> names;
   for (size_t z = 0; z < spec.zones.size(); ++z) {
@@ -69,7 +71,9 @@ std::vector<Shape> make_shapes(const model::FaceModel& model, const FilmSpec& sp
     }
     const auto shape = make_zone_levels(model.geometry, spec.zones[z]);
     violations.absorb(field, shape.status());
-    if (shape.ok()) shapes.push_back(*shape);
+    if (!shape.ok()) continue;
+    shapes.push_back(*shape);
+    judge_zone_share(model, spec, spec.zones[z], field, violations, remarks);
   }
   return shapes;
 }
@@ -179,12 +183,13 @@ void take_whole_slots(const FilmSpec& spec, const std::vector<Shape>& shapes, Pl
 
 }  // namespace
 
-PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, FieldViolations& violations) {
+PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, FieldViolations& violations,
+                        std::vector<std::string>& remarks) {
   PlacedZones placed;
   const size_t n_slots = static_cast<size_t>(spec.n_xi) * spec.n_eta;
   placed.zone_of_slot.assign(n_slots, -1);
   placed.cover.assign(n_slots, film::kWholeSlot);
-  const std::vector<Shape> shapes = make_shapes(model, spec, violations);
+  const std::vector<Shape> shapes = make_shapes(model, spec, violations, remarks);
   if (shapes.size() < spec.zones.size()) return placed;
   for (size_t z = 0; z < shapes.size(); ++z) {
     placed.cutting.push_back(levels_of_own_part(shapes, z));

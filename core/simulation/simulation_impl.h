@@ -15,7 +15,7 @@
 namespace lipofill::simulation {
 
 /// The members of Simulation; its functions are spread over simulation.cc (steps), step_report.cc,
-/// frames.cc and snapshot.cc.
+/// frames.cc, result_remarks.cc and snapshot.cc.
 struct Simulation::Impl {
   std::shared_ptr<const model::FaceModel> model;
   plan::SimulationSpec spec;
@@ -52,6 +52,7 @@ struct Simulation::Impl {
 
   void fill_report(const step::StepOutcome& outcome, double dt);
   void report_ligaments(const step::StepOutcome& outcome);
+  void remark_on_result(std::vector<std::string>& remarks) const;
   Eigen::Matrix3Xd skin_positions() const;
   Eigen::Matrix3Xd skin_displacement() const;
 

@@ -76,6 +76,22 @@ function Zones() {
   );
 }
 
+/** What to know before relying on the figures. */
+function Remarks() {
+  const remarks = simulation.value?.summary?.remarks ?? [];
+  if (remarks.length === 0) return null;
+  return (
+    <section class="remarks" aria-label="Remarks">
+      <h3>Remarks</h3>
+      <ul>
+        {remarks.map((remark) => (
+          <li key={remark}>{remark}</li>
+        ))}
+      </ul>
+    </section>
+  );
+}
+
 export function Figures() {
   const row = rowNow();
   const all = rows.value;
@@ -96,6 +112,7 @@ export function Figures() {
       <Figure label="Skin rises" value={(row?.skinMaxDisplacementMm ?? 0).toFixed(1)} unit="mm" />
       <Figure label="Simulated time" value={(timeShown.value ?? row?.timeS ?? 0).toFixed(1)} unit="s" />
       <Zones />
+      <Remarks />
       {all.length > 1 && (
         <>
           <Plot

@@ -34,8 +34,18 @@ function addZone(film: number, choice: string): void {
       into.push(newZone(freeName(choice.replace(/_(left|right)$/, ""), taken), choice));
     }
   });
+  coverWithModel(choice);
   if (choice === "painted")
     tool.value = { kind: "paint", film, zone: plan.value.simulation!.films[film].zones.length - 1, erase: false };
+}
+
+/** A model that goes around its zones goes around a new one as well; it is built again then. */
+function coverWithModel(choice: string): void {
+  const around = region.value?.around;
+  if (!/_(left|right)$/.test(choice) || !around || around.regions.includes(choice)) return;
+  editPlan(({ model }) => {
+    if (model?.geometry.case === "scanRegion") model.geometry.value.around!.regions.push(choice);
+  });
 }
 
 /** With what names it elsewhere. */

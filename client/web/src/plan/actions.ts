@@ -9,6 +9,7 @@ import { collectMeshes } from "../api/meshes";
 import { newId, patients } from "../api/client";
 import { toProblem } from "../api/errors";
 import { uploadScan } from "../api/upload";
+import { takeRegionFromZones } from "./anatomy";
 import { parseLandmarks } from "./landmarks";
 import { parsePlan } from "./plan_file";
 import {
@@ -90,6 +91,7 @@ export function usePlan(next: Plan): void {
       if (Object.keys(into.landmarksMm).length === 0 && before)
         Object.assign(into, { landmarksMm: before.landmarksMm, axes: before.axes });
     }
+    takeRegionFromZones(next);
     plan.value = next;
     violations.value = [];
     setModel(undefined, undefined);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 namespace lipofill::geometry {
 namespace {
@@ -19,24 +21,6 @@ Corner between(const Corner& a, const Corner& b, double share) {
   return {a.s + share * (b.s - a.s), a.t + share * (b.t - a.t)};
 }
 
-/// Where the level is zero between two places of opposite sign: false position, whose first step is exact for a level
-/// that is linear there.
-double find_crossing(double low_value, double high_value, const std::function<double(double)>& value_at) {
-  constexpr int kSteps = 3;
-  double low = 0.0;
-  double high = 1.0;
-  double share = 0.5;
-  for (int step = 0; step < kSteps; ++step) {
-    share = low + (high - low) * low_value / (low_value - high_value);
-    const double value = value_at(share);
-    if (value == 0.0) break;
-    const bool is_low = (value < 0.0) == (low_value < 0.0);
-    (is_low ? low : high) = share;
-    (is_low ? low_value : high_value) = value;
-  }
-  return share;
-}
-
 /// The part of a polygon where the level is at least zero.
 Polygon clip(const Polygon& polygon, const std::function<double(const Corner&)>& level) {
   Polygon inside;
@@ -47,7 +31,7 @@ Polygon clip(const Polygon& polygon, const std::function<double(const Corner&)>&
     if (values[k] >= 0.0) inside.push_back(polygon[k]);
     if ((values[k] >= 0.0) == (values[next] >= 0.0)) continue;
     const auto at = [&](double share) { return level(between(polygon[k], polygon[next], share)); };
-    inside.push_back(between(polygon[k], polygon[next], find_crossing(values[k], values[next], at)));
+    inside.push_back(between(polygon[k], polygon[next], find_zero(values[k], values[next], at)));
   }
   return inside;
 }
@@ -113,51 +97,6 @@ std::array<double, 4> fit_gauss_shares(const RectangleMoments& moments) {
   const double scale = 4.0 / ((high - low) * (high - low));
   return {scale * product(high, high), -scale * product(low, high), -scale * product(high, low),
           scale * product(low, low)};
-}
-
-std::vector<OutlineSegment> trace_outline(const Level& level, int n_xi, int n_eta) {
-  const auto point = [&](int i, int j) {
-    return ChartPoint{static_cast<double>(i) / n_xi, static_cast<double>(j) / n_eta};
-  };
-  std::vector<double> values;
-  for (int j = 0; j <= n_eta; ++j) {
-    for (int i = 0; i <= n_xi; ++i) values.push_back(level(point(i, j)));
-  }
-  std::vector<OutlineSegment> segments;
-  for (int j = 0; j < n_eta; ++j) {
-    for (int i = 0; i < n_xi; ++i) {
-      const std::array<std::array<int, 2>, 4> corners = {{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
-      std::vector<ChartPoint> crossings;
-      for (int k = 0; k < 4; ++k) {
-        const auto [i0, j0] = corners[k];
-        const auto [i1, j1] = corners[(k + 1) % 4];
-        const double from = values[j0 * (n_xi + 1) + i0];
-        const double to = values[j1 * (n_xi + 1) + i1];
-        if ((from >= 0.0) == (to >= 0.0)) continue;
-        const ChartPoint a = point(i0, j0);
-        const ChartPoint b = point(i1, j1);
-        const auto on_side = [&](double share) {
-          return ChartPoint{a.xi + share * (b.xi - a.xi), a.eta + share * (b.eta - a.eta)};
-        };
-        crossings.push_back(on_side(find_crossing(from, to, [&](double share) { return level(on_side(share)); })));
-      }
-      if (crossings.size() == 2) segments.push_back({crossings[0], crossings[1]});
-      if (crossings.size() != 4) continue;
-      // Two corners that lie across from one another are inside: the centre says whether they are joined.
-      const ChartPoint a = point(i, j);
-      const ChartPoint c = point(i + 1, j + 1);
-      const bool joined = level({0.5 * (a.xi + c.xi), 0.5 * (a.eta + c.eta)}) >= 0.0;
-      const bool first_inside = values[j * (n_xi + 1) + i] >= 0.0;
-      if (joined == first_inside) {
-        segments.push_back({crossings[0], crossings[1]});
-        segments.push_back({crossings[2], crossings[3]});
-      } else {
-        segments.push_back({crossings[3], crossings[0]});
-        segments.push_back({crossings[1], crossings[2]});
-      }
-    }
-  }
-  return segments;
 }
 
 }  // namespace lipofill::geometry

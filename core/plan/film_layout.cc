@@ -7,6 +7,7 @@
 #include "core/base/units.h"
 #include "core/plan/film_walls.h"
 #include "core/plan/zone_levels.h"
+#include "core/plan/zone_outline.h"
 #include "core/plan/zone_placement.h"
 
 namespace lipofill::plan {
@@ -81,6 +82,18 @@ int find_level(const model::FaceModel& model, const FilmSpec& spec, FieldViolati
   return -1;
 }
 
+/// The edges of whole cells as lines of the chart.
+std::vector<geometry::OutlineLoop> outline_of_cells(const film::FilmGrid& grid, int zone) {
+  std::vector<geometry::OutlineLoop> outline;
+  for (const OutlineLoop& loop : trace_zone_outline(grid, zone)) {
+    geometry::OutlineLoop& line = outline.emplace_back();
+    for (const int vertex : loop) {
+      line.push_back({grid.vertex_xi(vertex % (grid.n_xi + 1)), grid.vertex_eta(vertex / (grid.n_xi + 1))});
+    }
+  }
+  return outline;
+}
+
 }  // namespace
 
 int FilmLayout::cell_at(const geometry::ChartPoint& place) const {
@@ -146,6 +159,11 @@ absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmS
     if (spec.edge.outline == ZoneOutline::kCurve) layout.pieces = cut_at_outlines(layout.pieces, layout.grid, zones);
     layout.bond =
         bond_around_zones(model, spec, layout.level, layout.grid, layout.pieces, layout.walled_slots, zones);
+  }
+  for (size_t z = 0; z < spec.zones.size(); ++z) {
+    layout.outlines.push_back(spec.edge.outline == ZoneOutline::kCurve
+                                  ? zones.outlines[z]
+                                  : outline_of_cells(layout.grid, static_cast<int>(z)));
   }
   layout.wall = spec.wall;
   layout.wall_stiffness = spec.wall_stiffness;

@@ -7,6 +7,7 @@
 #include "core/film/cell_pieces.h"
 #include "core/film/film_grid.h"
 #include "core/film/rheology.h"
+#include "core/geometry/level.h"
 #include "core/model/face_model.h"
 #include "core/plan/simulation_spec.h"
 #include "core/plan/zone_bond.h"
@@ -26,6 +27,7 @@ struct FilmLayout {
   geometry::ScalarField initial_thickness;
   film::WalledSlots walled_slots;  ///< on both sides of walls inside zones
   ConnectiveTissueSpec connective_tissue;
+  std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< of each zone, on the chart
   std::vector<film::CellPiece> pieces;  ///< on the quadrilaterals of the tissue, kTissue only
   ZoneBond bond;                        ///< of the two walls, kTissue only
   std::vector<std::string> remarks;  ///< zones that lie on the film in part, a sentence each

@@ -73,7 +73,7 @@ class AttachmentField {
   AttachmentField(const model::FaceModel& model, const FilmSpec& spec, const PlacedZones& zones)
       : grid_(model.geometry.grid), levels_(zones.levels) {
     for (size_t z = 0; z < spec.zones.size(); ++z) {
-      distances_.emplace_back(grid_, zones.levels[z]);
+      distances_.emplace_back(grid_, zones.outlines[z]);
       attachments_.push_back(spec.edge.attachment.value_or(attachment_of(spec.zones[z])));
     }
   }

@@ -18,9 +18,12 @@ double squared_distance(const Eigen::Vector3d& point, const std::array<Eigen::Ve
 
 }  // namespace
 
-ZoneDistance::ZoneDistance(const geometry::LayeredGrid& grid, const geometry::Level& level) {
-  for (const geometry::OutlineSegment& segment : geometry::trace_outline(level, 2 * grid.n_xi, 2 * grid.n_eta)) {
-    segments_.push_back({geometry::skin_position(grid, segment[0]), geometry::skin_position(grid, segment[1])});
+ZoneDistance::ZoneDistance(const geometry::LayeredGrid& grid, const std::vector<geometry::OutlineLoop>& outline) {
+  for (const geometry::OutlineLoop& loop : outline) {
+    for (size_t k = 0; k < loop.size(); ++k) {
+      segments_.push_back({geometry::skin_position(grid, loop[k]),
+                           geometry::skin_position(grid, loop[(k + 1) % loop.size()])});
+    }
   }
   for (const auto& segment : segments_) centre_ += segment[0] / static_cast<double>(segments_.size());
   for (const auto& segment : segments_) {

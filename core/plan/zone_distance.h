@@ -4,16 +4,15 @@
 #include <array>
 #include <vector>
 
-#include "core/geometry/cut_rectangle.h"
 #include "core/geometry/layered_grid.h"
+#include "core/geometry/level.h"
 
 namespace lipofill::plan {
 
 /// Straight distance from a zone's outline, both on the undeformed skin.
 class ZoneDistance {
  public:
-  /// The outline is traced twice as finely as the grid.
-  ZoneDistance(const geometry::LayeredGrid& grid, const geometry::Level& level);
+  ZoneDistance(const geometry::LayeredGrid& grid, const std::vector<geometry::OutlineLoop>& outline);
 
   /// [m], infinite where it is more than `reach` and where the zone has no outline on the chart.
   double to_outline(const Eigen::Vector3d& point, double reach) const;

@@ -4,7 +4,7 @@
 
 #include "absl/status/statusor.h"
 #include "core/base/field_violations.h"
-#include "core/geometry/cut_rectangle.h"
+#include "core/geometry/level.h"
 #include "core/model/face_model.h"
 #include "core/plan/simulation_spec.h"
 

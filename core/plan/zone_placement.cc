@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "core/geometry/cut_rectangle.h"
 #include "core/plan/zone_levels.h"
 #include "core/plan/zone_share.h"
 
@@ -194,6 +195,8 @@ PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, Fie
   for (size_t z = 0; z < shapes.size(); ++z) {
     placed.cutting.push_back(levels_of_own_part(shapes, z));
     placed.levels.push_back(least_of(spec, placed.cutting.back()));
+    placed.outlines.push_back(geometry::trace_outline(placed.levels.back(), 2 * model.geometry.grid.n_xi,
+                                                      2 * model.geometry.grid.n_eta));
   }
   if (spec.edge.outline == ZoneOutline::kCells) {
     take_whole_slots(spec, shapes, placed);

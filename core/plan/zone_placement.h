@@ -6,7 +6,7 @@
 #include "core/base/field_violations.h"
 #include "core/film/cell_pieces.h"
 #include "core/film/film_grid.h"
-#include "core/geometry/cut_rectangle.h"
+#include "core/geometry/level.h"
 #include "core/model/face_model.h"
 #include "core/plan/simulation_spec.h"
 
@@ -20,6 +20,7 @@ struct PlacedZones {
   std::vector<geometry::Level> levels;      ///< of each zone: positive where the fat is its own
   /// The same as several levels of which all are positive there, without the corners that one of their minimum has.
   std::vector<std::vector<geometry::Level>> cutting;
+  std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< of each zone, twice as fine as the grid of the tissue
   double uncounted = 0.0;  ///< slots' worth of zones that no cell could take
 };
 

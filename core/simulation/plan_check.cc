@@ -9,7 +9,6 @@
 #include "core/mechanics/tissue_setup.h"
 #include "core/mechanics/wall_fibres.h"
 #include "core/plan/plan_placement.h"
-#include "core/plan/zone_outline.h"
 #include "core/simulation/frame_layout.h"
 
 namespace lipofill::simulation {
@@ -22,11 +21,14 @@ std::vector<int> count_zones_before(const plan::SimulationSpec& spec) {
   return before;
 }
 
-std::vector<Eigen::Matrix3Xd> place_outline(const plan::FilmLayout& film, int zone, const Eigen::Matrix3Xd& vertices) {
+std::vector<Eigen::Matrix3Xd> place_outline(const geometry::LayeredGrid& grid,
+                                            const std::vector<geometry::OutlineLoop>& outline) {
   std::vector<Eigen::Matrix3Xd> lines;
-  for (const plan::OutlineLoop& loop : plan::trace_zone_outline(film.grid, zone)) {
+  for (const geometry::OutlineLoop& loop : outline) {
     Eigen::Matrix3Xd& line = lines.emplace_back(3, static_cast<Eigen::Index>(loop.size()));
-    for (Eigen::Index k = 0; k < line.cols(); ++k) line.col(k) = vertices.col(loop[static_cast<size_t>(k)]);
+    for (Eigen::Index k = 0; k < line.cols(); ++k) {
+      line.col(k) = geometry::skin_position(grid, loop[static_cast<size_t>(k)]);
+    }
   }
   return lines;
 }
@@ -38,7 +40,7 @@ void add_zones(const model::FaceModel& model, const plan::FilmLayout& film, int 
   const auto first = zones.size();
   for (int z = 0; z < static_cast<int>(film.zone_names.size()); ++z) {
     zones.push_back({zones_before + z + 1, film.name, film.zone_names[static_cast<size_t>(z)], 0, 0.0,
-                     place_outline(film, z, vertices)});
+                     place_outline(model.geometry.grid, film.outlines[static_cast<size_t>(z)])});
   }
   for (int cell = 0; cell < film.grid.n_cells(); ++cell) {
     PlacedZone& zone = zones[first + static_cast<size_t>(film.grid.zone_of_cell[cell])];

@@ -79,30 +79,5 @@ TEST(CutRectangle, GaussSharesIntegrateBilinearFunctionsExactly) {
   EXPECT_EQ(fit_gauss_shares({1.0, 0.5, 0.5, 0.25}), (std::array<double, 4>{1.0, 1.0, 1.0, 1.0}));
 }
 
-TEST(TraceOutline, LengthOfACircleConverges) {
-  double last = 0.0;
-  for (const int n : {10, 20, 40}) {
-    double length = 0.0;
-    for (const OutlineSegment& segment : trace_outline(disc(0.5, 0.45, 0.3), n, n)) {
-      length += std::hypot(segment[1].xi - segment[0].xi, segment[1].eta - segment[0].eta);
-    }
-    const double error = std::abs(length - 0.6 * std::numbers::pi);
-    if (last > 0.0) {
-      EXPECT_GT(std::log2(last / error), 1.5);
-    }
-    last = error;
-  }
-}
-
-TEST(TraceOutline, TwoPartsThatTouchAtACornerStayApart) {
-  // Inside in the lower left and the upper right, and not between them.
-  const Level saddle = [](const ChartPoint& p) { return (p.xi - 0.5) * (p.eta - 0.5) - 0.01; };
-  const auto segments = trace_outline(saddle, 1, 1);
-  ASSERT_EQ(segments.size(), 2u);
-  for (const OutlineSegment& segment : segments) {
-    EXPECT_GT((segment[0].xi - 0.5) * (segment[1].xi - 0.5), 0.0) << "both ends on one side of the saddle";
-  }
-}
-
 }  // namespace
 }  // namespace lipofill::geometry

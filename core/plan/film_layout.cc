@@ -82,6 +82,17 @@ int find_level(const model::FaceModel& model, const FilmSpec& spec, FieldViolati
   return -1;
 }
 
+/// Says what holds the layers together around zones whose plan does not.
+void remark_on_attachments(const model::FaceModel& model, const FilmSpec& spec, std::vector<std::string>& remarks) {
+  if (has_rigid_edge(model, spec.edge) || spec.edge.attachment.has_value()) return;
+  for (const ZoneSpec& zone : spec.zones) {
+    const AttachmentSpec assumed = assume_attachment(zone);
+    remarks.push_back(absl::StrCat("Around zone ", zone.name, " the layers are assumed to hold together with ",
+                                   assumed.stiffness / kPascalsPerMetrePerKilopascalPerMillimetre,
+                                   " kPa/mm, which grows over ", assumed.width / kMetresPerMillimetre, " mm."));
+  }
+}
+
 /// The edges of whole cells as lines of the chart.
 std::vector<geometry::OutlineLoop> outline_of_cells(const film::FilmGrid& grid, int zone) {
   std::vector<geometry::OutlineLoop> outline;
@@ -157,6 +168,7 @@ absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmS
     const geometry::LayeredGrid& tissue = model.geometry.grid;
     layout.pieces = film::cut_cells(layout.grid, tissue.n_xi, tissue.n_eta);
     if (spec.edge.outline == ZoneOutline::kCurve) layout.pieces = cut_at_outlines(layout.pieces, layout.grid, zones);
+    remark_on_attachments(model, spec, layout.remarks);
     layout.bond =
         bond_around_zones(model, spec, layout.level, layout.grid, layout.pieces, layout.walled_slots, zones);
   }

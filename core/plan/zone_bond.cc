@@ -74,7 +74,7 @@ class AttachmentField {
       : grid_(model.geometry.grid), levels_(zones.levels) {
     for (size_t z = 0; z < spec.zones.size(); ++z) {
       distances_.emplace_back(grid_, zones.outlines[z]);
-      attachments_.push_back(spec.edge.attachment.value_or(attachment_of(spec.zones[z])));
+      attachments_.push_back(spec.edge.attachment.value_or(assume_attachment(spec.zones[z])));
     }
   }
 
@@ -87,12 +87,6 @@ class AttachmentField {
   }
 
  private:
-  static AttachmentSpec attachment_of(const ZoneSpec& zone) {
-    const auto* region = std::get_if<NamedRegion>(&zone.shape);
-    const anatomy::ZoneEdge edge = anatomy::edge_of_region(region != nullptr ? region->name : "");
-    return {edge.stiffness, edge.width};
-  }
-
   double outside_zones(const Eigen::Vector3d& point) const {
     double least = std::numeric_limits<double>::infinity();
     for (size_t z = 0; z < distances_.size(); ++z) {
@@ -259,12 +253,21 @@ class BondBuilder {
 
 }  // namespace
 
+AttachmentSpec assume_attachment(const ZoneSpec& zone) {
+  const auto* region = std::get_if<NamedRegion>(&zone.shape);
+  const anatomy::ZoneEdge edge = anatomy::edge_of_region(region != nullptr ? region->name : "");
+  return {edge.stiffness, edge.width};
+}
+
+bool has_rigid_edge(const model::FaceModel& model, const ZoneEdgeSpec& edge) {
+  return edge.is_rigid || (!edge.attachment.has_value() && model.is_square);
+}
+
 ZoneBond bond_around_zones(const model::FaceModel& model, const FilmSpec& spec, int level, const film::FilmGrid& grid,
                            const std::vector<film::CellPiece>& pieces, const film::WalledSlots& walled_slots,
                            const PlacedZones& zones) {
   BondBuilder builder(model, level, grid, walled_slots, cover_quads(model.geometry.grid, grid, pieces));
-  const bool is_rigid = spec.edge.is_rigid || (!spec.edge.attachment.has_value() && model.is_square);
-  if (!is_rigid) {
+  if (!has_rigid_edge(model, spec.edge)) {
     builder.attach_elastically(AttachmentField(model, spec, zones));
   } else if (spec.edge.outline == ZoneOutline::kCells) {
     builder.part_zones_rigidly(1.0 - kRoundOff);

@@ -16,6 +16,12 @@ struct ZoneBond {
   std::vector<double> stiffness;  ///< of the attachment between the two [N/m]
 };
 
+/// The attachment around a zone of a plan that gives none (anatomy/zone_edges.h).
+AttachmentSpec assume_attachment(const ZoneSpec& zone);
+
+/// True where the layers are bonded from the outline on.
+bool has_rigid_edge(const model::FaceModel& model, const ZoneEdgeSpec& edge);
+
 /// Bonds the layers outside the zones and along walls inside them.
 ///
 /// An attachment of stiffness k(x) per area goes to the open places in shares int k N_a dA, N_a bilinear. Outside the

@@ -20,8 +20,9 @@ void add(Hasher& hasher, const solid::HexMesh& mesh) {
   for (const bool stacked : mesh.stacked) hasher.add(stacked);
 }
 
+/// Young's modulus is left out: it belongs to the tissue, not to its structure.
 void add(Hasher& hasher, const solid::ElasticMaterial& material) {
-  for (const double value : {material.youngs_modulus, material.poisson_ratio, material.density, material.prestress}) {
+  for (const double value : {material.poisson_ratio, material.density, material.prestress}) {
     hasher.add(value);
   }
 }

@@ -44,7 +44,6 @@ struct Simulation::Impl {
 
   absl::Status set_up();
   absl::Status place_probes();
-  absl::Status add_injection(const plan::InjectionSpec& injection, double now);
   void advance();
   void try_with_smaller_steps();
   double first_step_to_try(double smallest) const;

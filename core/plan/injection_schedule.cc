@@ -51,8 +51,9 @@ void spread_over_zone(const film::FilmGrid& grid, int zone, const Eigen::VectorX
 
 }  // namespace
 
-absl::Status InjectionSchedule::add(const model::FaceModel& model, const std::vector<FilmLayout>& films,
-                                    const InjectionSpec& spec, double now) {
+absl::StatusOr<PlacedInjection> InjectionSchedule::place(const model::FaceModel& model,
+                                                         const std::vector<FilmLayout>& films,
+                                                         const InjectionSpec& spec, double now) const {
   FieldViolations violations;
   const auto [film, zone] = find_zone(films, spec.zone);
   if (film < 0) violations.add("zone", absl::StrCat("is '", spec.zone, "', which no film has"));
@@ -61,7 +62,7 @@ absl::Status InjectionSchedule::add(const model::FaceModel& model, const std::ve
   if (spec.start.has_value()) violations.check_range("start_s", *spec.start, now, 1e6, "s");
   if (!violations.empty()) return violations.to_status();
 
-  Injection injection;
+  PlacedInjection injection;
   injection.film = film;
   const FilmLayout& layout = films[film];
   const Eigen::VectorXd areas = cell_areas(model, layout.grid);
@@ -93,9 +94,12 @@ absl::Status InjectionSchedule::add(const model::FaceModel& model, const std::ve
   injection.volume = spec.volume;
   injection.rate = spec.rate;
   injection.start = spec.start.value_or(std::max(now, end_));
+  return injection;
+}
+
+void InjectionSchedule::add(PlacedInjection injection) {
   end_ = std::max(end_, injection.end());
   injections_.push_back(std::move(injection));
-  return absl::OkStatus();
 }
 
 void InjectionSchedule::deliver(const std::vector<FilmLayout>& films,
@@ -103,7 +107,7 @@ void InjectionSchedule::deliver(const std::vector<FilmLayout>& films,
                                 std::vector<Eigen::VectorXd>& received) {
   received.resize(films.size());
   for (size_t f = 0; f < films.size(); ++f) received[f].setZero(films[f].grid.n_cells());
-  for (Injection& injection : injections_) {
+  for (PlacedInjection& injection : injections_) {
     const double amount = due(injection, time + dt) - injection.delivered;
     if (amount == 0.0) continue;
     Eigen::VectorXd& into = received[injection.film];
@@ -126,14 +130,14 @@ void InjectionSchedule::deliver(const std::vector<FilmLayout>& films,
   }
 }
 
-double InjectionSchedule::due(const Injection& injection, double time) {
+double InjectionSchedule::due(const PlacedInjection& injection, double time) {
   const double elapsed = std::max(0.0, time - injection.start);
   return std::copysign(std::min(std::abs(injection.volume), injection.rate * elapsed), injection.volume);
 }
 
 double InjectionSchedule::next_change(double time) const {
   double next = std::numeric_limits<double>::infinity();
-  for (const Injection& injection : injections_) {
+  for (const PlacedInjection& injection : injections_) {
     for (const double change : {injection.start, injection.end()}) {
       if (change > time) next = std::min(next, change);
     }
@@ -143,7 +147,7 @@ double InjectionSchedule::next_change(double time) const {
 
 double InjectionSchedule::undelivered(double time) const {
   double sum = 0.0;
-  for (const Injection& injection : injections_) sum += due(injection, time) - injection.delivered;
+  for (const PlacedInjection& injection : injections_) sum += due(injection, time) - injection.delivered;
   return sum;
 }
 

@@ -12,13 +12,26 @@
 
 namespace lipofill::plan {
 
+/// An injection with the cells of the film that it goes into.
+struct PlacedInjection {
+  int film = 0;
+  std::vector<int> cells;
+  std::vector<double> shares;                                     ///< sum 1
+  double volume = 0.0;                                            ///< [m3]
+  double rate = 0.0;                                              ///< [m3/s] > 0
+  double start = 0.0;                                             ///< [s]
+  double delivered = 0.0;                                         ///< [m3]
+  double end() const { return start + std::abs(volume) / rate; }  ///< [s]
+};
+
 /// The volumes injected into each cell over time.
 class InjectionSchedule {
  public:
-  /// Adds an injection. Field violations are named as in lipofill.v1.Injection. Without a start it
+  /// Places an injection that may be added. Field violations are named as in lipofill.v1.Injection. Without a start it
   /// begins at `now` or when the last one ends.
-  absl::Status add(const model::FaceModel& model, const std::vector<FilmLayout>& films, const InjectionSpec& spec,
-                   double now);
+  absl::StatusOr<PlacedInjection> place(const model::FaceModel& model, const std::vector<FilmLayout>& films,
+                                        const InjectionSpec& spec, double now) const;
+  void add(PlacedInjection injection);
 
   /// Volume that each cell of each film receives between `time` and `time + dt`, and notes it as delivered [m3]. No
   /// more is taken out of a cell than nearly all that it holds; the rest stays due. A film between rigid walls stays full.
@@ -44,20 +57,10 @@ class InjectionSchedule {
   void restore_delivered(const std::vector<double>& each, double total);
 
  private:
-  struct Injection {
-    int film = 0;
-    std::vector<int> cells;
-    std::vector<double> shares;                                     ///< sum 1
-    double volume = 0.0;                                            ///< [m3]
-    double rate = 0.0;                                              ///< [m3/s] > 0
-    double start = 0.0;                                             ///< [s]
-    double delivered = 0.0;                                         ///< [m3]
-    double end() const { return start + std::abs(volume) / rate; }  ///< [s]
-  };
   /// Volume that should have been delivered by `time` [m3].
-  static double due(const Injection& injection, double time);
+  static double due(const PlacedInjection& injection, double time);
 
-  std::vector<Injection> injections_;
+  std::vector<PlacedInjection> injections_;
   double delivered_ = 0.0;
   double end_ = 0.0;
 };

@@ -43,8 +43,9 @@ class Placement {
       if (const absl::Status wanted = check_wanted(unwanted_); !wanted.ok()) return wanted;
       const InjectionSpec& injection = spec_.injections[k];
       if (lies_in_unplaced_film(injection)) continue;
-      violations_.absorb(absl::StrCat("injections[", k, "]"),
-                         placed_.schedule.add(model_, placed_.films, injection, 0.0));
+      auto placed = placed_.schedule.place(model_, placed_.films, injection, 0.0);
+      violations_.absorb(absl::StrCat("injections[", k, "]"), placed.status());
+      if (placed.ok()) placed_.schedule.add(*std::move(placed));
     }
     return absl::OkStatus();
   }

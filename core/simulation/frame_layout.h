@@ -28,6 +28,7 @@ struct FrameLayout {
 
 /// @param skin  of the simulation whose films these are
 /// @param face  whose skin and scan the frame shows: that model's own or another one's of the same chart
+/// Checked by tests/unit/simulation/frame_layout_test.cc.
 FrameLayout make_frame_layout(const geometry::LayeredGrid& skin, const std::vector<plan::FilmLayout>& films,
                               const geometry::FaceGeometry& face);
 

@@ -100,28 +100,8 @@ Simulation::Impl::FilmsNow Simulation::Impl::measure_films() const {
 std::vector<MeshTopology> Simulation::topology() const {
   const Impl& impl = *impl_;
   const geometry::FaceGeometry& face = impl.model->geometry;
-  const geometry::LayeredGrid& grid = face.grid;
-  std::vector<MeshTopology> meshes;
-
-  MeshTopology skin{
-      "skin", to_floats(Eigen::Matrix3Xd(grid.nodes.leftCols(grid.nodes_per_level())), kMillimetresPerMetre), {}, 4};
-  for (int j = 0; j < grid.n_eta; ++j) {
-    for (int i = 0; i < grid.n_xi; ++i) {
-      for (const int v : {grid.surface_index(i, j), grid.surface_index(i + 1, j), grid.surface_index(i + 1, j + 1),
-                          grid.surface_index(i, j + 1)}) {
-        skin.cells.push_back(static_cast<uint32_t>(v));
-      }
-    }
-  }
-  meshes.push_back(std::move(skin));
-
-  if (face.scan.n_vertices() > 0) {
-    MeshTopology scan{"scan", to_floats(face.scan.points, kMillimetresPerMetre), {}, 3};
-    for (const auto& triangle : face.scan.triangles) {
-      for (const int v : triangle) scan.cells.push_back(static_cast<uint32_t>(v));
-    }
-    meshes.push_back(std::move(scan));
-  }
+  std::vector<MeshTopology> meshes = {geometry::make_skin_mesh(face.grid)};
+  if (face.scan.n_vertices() > 0) meshes.push_back(geometry::make_scan_mesh(face.scan));
   for (size_t f = 0; f < impl.films.size(); ++f) {
     meshes.push_back({"film/" + impl.films[f].name,
                       select_columns(impl.rest_film_vertices[f], impl.frame_layout.film_vertices[f]),

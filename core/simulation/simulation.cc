@@ -212,28 +212,31 @@ const std::shared_ptr<const model::FaceModel>& Simulation::shared_model() const 
   return impl_->model;
 }
 
-absl::StatusOr<plan::InjectionSpec> Simulation::resolve(const plan::InjectionSpec& injection) const {
+absl::StatusOr<ResolvedInjection> Simulation::resolve(const plan::InjectionSpec& injection) const {
   if (impl_->phase != Phase::kRunning) {
     return absl::FailedPreconditionError("the simulation has ended and takes no more injections");
   }
   if (const absl::Status room = plan::check_room_for_injection(impl_->spec); !room.ok()) return room;
-  plan::InjectionSpec timed = injection;
-  if (!timed.start.has_value()) timed.start = std::max(impl_->state.time, impl_->schedule.end());
-  plan::InjectionSchedule trial = impl_->schedule;
-  const absl::Status status = trial.add(*impl_->model, impl_->films, timed, impl_->state.time);
-  if (!status.ok()) return status;
-  return timed;
+  ResolvedInjection resolved{injection, {}};
+  std::optional<double>& start = resolved.spec.start;
+  if (!start.has_value()) start = std::max(impl_->state.time, impl_->schedule.end());
+  auto placed = impl_->schedule.place(*impl_->model, impl_->films, resolved.spec, impl_->state.time);
+  if (!placed.ok()) return placed.status();
+  resolved.placed = *std::move(placed);
+  return resolved;
+}
+
+void Simulation::inject_resolved(const ResolvedInjection& injection) {
+  impl_->schedule.add(injection.placed);
+  impl_->spec.injections.push_back(injection.spec);
+  impl_->state.next_step = std::min(impl_->state.next_step, impl_->spec.step);
+  impl_->state.slow_steps = 0;
 }
 
 absl::Status Simulation::inject(const plan::InjectionSpec& injection) {
-  const auto timed = resolve(injection);
-  if (!timed.ok()) return timed.status();
-  const absl::Status status = impl_->schedule.add(*impl_->model, impl_->films, *timed, impl_->state.time);
-  if (!status.ok()) return status;
-  impl_->spec.injections.push_back(*timed);
-  impl_->state.next_step = std::min(impl_->state.next_step, impl_->spec.step);
-  impl_->state.slow_steps = 0;
-  return absl::OkStatus();
+  const auto resolved = resolve(injection);
+  if (resolved.ok()) inject_resolved(*resolved);
+  return resolved.status();
 }
 
 int Simulation::n_hexahedra() const {

@@ -10,8 +10,10 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "core/geometry/mesh_topology.h"
 #include "core/mechanics/step_cost.h"
 #include "core/model/face_model.h"
+#include "core/plan/injection_schedule.h"
 #include "core/plan/simulation_spec.h"
 
 namespace lipofill::simulation {
@@ -72,15 +74,7 @@ struct StepReport {
   std::vector<double> probe_pressure;   ///< [Pa]
 };
 
-/// A mesh whose points move: what viewers draw. `kind` 3: triangles, 4: quadrilaterals, 8: hexahedra.
-struct MeshTopology {
-  std::string name;              ///< "skin", "scan", "film/<name>", "tissue"
-  std::vector<float> points_mm;  ///< (n_points, 3) at rest
-  std::vector<uint32_t> cells;   ///< (n_cells, kind)
-  int kind = 3;
-  int n_points() const { return static_cast<int>(points_mm.size() / 3); }
-  int n_cells() const { return static_cast<int>(cells.size()) / kind; }
-};
+using geometry::MeshTopology;
 
 enum class FieldLocation { kPoint, kCell };
 
@@ -92,6 +86,12 @@ struct FrameField {
   FieldLocation location = FieldLocation::kPoint;
   int components = 1;
   std::vector<float> values;
+};
+
+/// An injection as a simulation adds it to its plan: with its start, and placed on the films.
+struct ResolvedInjection {
+  plan::InjectionSpec spec;
+  plan::PlacedInjection placed;
 };
 
 /// One simulation of one plan on one model: deterministic, on one thread, no I/O. Not thread-safe.
@@ -121,9 +121,12 @@ class Simulation {
   /// Adds an injection to the plan; without a start it begins now, or after the last one still due. Field violations
   /// named as in lipofill.v1.Injection. A settled or finished simulation does not take one: FAILED_PRECONDITION.
   absl::Status inject(const plan::InjectionSpec& injection);
-  /// The injection that inject() would add, with its start, or why it would refuse it. Whoever must note an injection
-  /// before it takes effect notes this one: inject() of it, at the same step of an equal simulation, does the same.
-  absl::StatusOr<plan::InjectionSpec> resolve(const plan::InjectionSpec& injection) const;
+  /// The injection that inject() would add, or why it would refuse it. Whoever must note an injection before it takes
+  /// effect notes this one, and then adds it with inject_resolved(), which refuses nothing. inject() of its
+  /// specification, at the same step of an equal simulation, does the same.
+  absl::StatusOr<ResolvedInjection> resolve(const plan::InjectionSpec& injection) const;
+  /// @pre  this simulation resolved it, and has neither taken a step nor an injection since
+  void inject_resolved(const ResolvedInjection& injection);
   const plan::SimulationSpec& spec() const;
   const model::FaceModel& model() const;
   const std::shared_ptr<const model::FaceModel>& shared_model() const;

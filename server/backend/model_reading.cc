@@ -37,20 +37,26 @@ absl::StatusOr<ScanIds> scans_of(const std::string& patient, const v1::ModelSpec
   return ids;
 }
 
+absl::Status read_scans(Backend& backend, const std::string& patient, const ScanIds& scans,
+                        model::FaceModelSpec& spec) {
+  if (scans.skin.empty()) return absl::OkStatus();
+  auto surface = read_scan_surface(backend, patient, scans.skin);
+  if (!surface.ok()) return surface.status();
+  std::get<geometry::ScanRegionSpec>(spec.region).scan = *std::move(surface);
+  if (scans.bone.empty()) return absl::OkStatus();
+  auto bone = read_scan_surface(backend, patient, scans.bone);
+  if (!bone.ok()) return bone.status();
+  spec.bone = *std::move(bone);
+  return absl::OkStatus();
+}
+
 absl::StatusOr<model::FaceModelSpec> read_model_spec(Backend& backend, const std::string& patient,
                                                      const v1::ModelSpec& message) {
   auto spec = to_face_model_spec(message);
   if (!spec.ok()) return spec.status();
   const auto scans = scans_of(patient, message);
   if (!scans.ok()) return scans.status();
-  if (scans->skin.empty()) return spec;
-  auto surface = read_scan_surface(backend, patient, scans->skin);
-  if (!surface.ok()) return surface.status();
-  std::get<geometry::ScanRegionSpec>(spec->region).scan = *std::move(surface);
-  if (scans->bone.empty()) return spec;
-  auto bone = read_scan_surface(backend, patient, scans->bone);
-  if (!bone.ok()) return bone.status();
-  spec->bone = *std::move(bone);
+  if (absl::Status read = read_scans(backend, patient, *scans, *spec); !read.ok()) return read;
   return spec;
 }
 

@@ -72,9 +72,10 @@ absl::StatusOr<CheckpointRecord> ResultKeeper::keep_checkpoint(const CheckpointR
   const Clock::time_point began = Clock::now();
   auto written = write_checkpoint(draft, snapshot, rows, request);
   if (written.ok()) {
-    metrics_.count_checkpoint(std::chrono::duration<double>(Clock::now() - began).count(), written->size_bytes);
+    metrics_.simulations().count_checkpoint(std::chrono::duration<double>(Clock::now() - began).count(),
+                                            written->size_bytes);
   } else {
-    metrics_.count_failed_checkpoint();
+    metrics_.simulations().count_failed_checkpoint();
   }
   return written;
 }
@@ -164,7 +165,7 @@ void ResultKeeper::stepped(const SeriesEntry& entry) {
   step.factorisations = cost.factorisations;
   step.tissue_solves = cost.tissue_solves;
   step.fallbacks = cost.fallbacks;
-  metrics_.count_step(step);
+  metrics_.steps().count(step);
 }
 
 absl::Status ResultKeeper::parked(const std::string& id, const SessionView& view) {
@@ -174,7 +175,7 @@ absl::Status ResultKeeper::parked(const std::string& id, const SessionView& view
     store_.keep_summary(id, "").IgnoreError();
     return absl::AbortedError("the simulation is in use at this moment");
   }
-  metrics_.count_parked_simulation();
+  metrics_.simulations().count_parked();
   return kept;
 }
 
@@ -193,7 +194,7 @@ absl::Status ResultKeeper::ended(const std::string& id, const SessionView& view,
   if (!kept.ok()) return kept;
   tidy(id);
   sessions_.remove(id);
-  metrics_.count_ended_simulation(state_name(view.state));
+  metrics_.simulations().count_ended(state_name(view.state));
   return kept;
 }
 

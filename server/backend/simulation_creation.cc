@@ -18,26 +18,35 @@
 namespace lipofill::server {
 namespace {
 
-absl::StatusOr<SimulationRecord> read_request(const Principal& caller, const v1::CreateSimulationRequest& request) {
+/// A simulation that is to be made: its record, and its plan as the core takes it.
+struct CreateOrder {
+  SimulationRecord record;
+  plan::SimulationSpec plan;
+};
+
+absl::StatusOr<CreateOrder> read_request(const Principal& caller, const v1::CreateSimulationRequest& request) {
   FieldViolations violations;
   violations.absorb("", check_request_id(request.request_id()));
   const auto id = id_or_new(request.simulation_id(), 'x', "simulation_id", caller.scope.tenant);
   violations.absorb("", id.status());
   violations.absorb("", check_display_name(request.display_name(), "display_name"));
   if (!request.has_spec()) violations.add("spec", "is missing");
-  if (request.has_spec()) violations.absorb("spec", to_simulation_spec(request.spec()).status());
+  auto plan = to_simulation_spec(request.spec());
+  if (request.has_spec()) violations.absorb("spec", plan.status());
   if (!request.spec().model().empty()) {
     violations.absorb("", parse_model_name(request.spec().model(), "spec.model").status());
   }
   if (!violations.empty()) return violations.to_status();
-  SimulationRecord record;
+  CreateOrder order;
+  SimulationRecord& record = order.record;
   record.id = *id;
   record.model = request.spec().model();
   record.display_name = request.display_name();
   record.spec_message = request.spec().SerializeAsString();
   record.create_time_us = now_us();
   record.tenant = caller.scope.tenant;
-  return record;
+  order.plan = *std::move(plan);
+  return order;
 }
 
 /// Shows a simulation that is only to be checked as it would be once created.
@@ -93,14 +102,19 @@ absl::StatusOr<v1::Simulation> show_simulation(Backend& backend, const std::stri
 }
 
 absl::StatusOr<std::unique_ptr<simulation::Simulation>> make_simulation(Backend& backend, const std::string& model,
-                                                                        const v1::SimulationSpec& spec) {
+                                                                        plan::SimulationSpec plan) {
   const auto built = backend.load_model(model);
   if (!built.ok()) return built.status();
-  auto plan = to_simulation_spec(spec);
-  if (!plan.ok()) return plan.status();
-  auto made = simulation::Simulation::create(*built, *std::move(plan));
+  auto made = simulation::Simulation::create(*built, std::move(plan));
   if (!made.ok()) return with_prefix("spec", made.status());
   return made;
+}
+
+absl::StatusOr<std::unique_ptr<simulation::Simulation>> make_simulation(Backend& backend, const std::string& model,
+                                                                        const v1::SimulationSpec& spec) {
+  auto plan = to_simulation_spec(spec);
+  if (!plan.ok()) return plan.status();
+  return make_simulation(backend, model, *std::move(plan));
 }
 
 SessionOptions make_session_options(const Backend& backend, const SimulationRecord& record, uint64_t epoch,
@@ -162,28 +176,29 @@ absl::Status delete_simulation_record(Backend& backend, const std::string& id, c
 
 absl::StatusOr<v1::Simulation> create_simulation(Backend& backend, const Principal& caller,
                                                  const v1::CreateSimulationRequest& request, const Unwanted& unwanted) {
-  const auto record = read_request(caller, request);
-  if (!record.ok()) return record.status();
+  auto order = read_request(caller, request);
+  if (!order.ok()) return order.status();
+  const SimulationRecord& record = order->record;
   const RequestKey key = make_request_key(caller, "CreateSimulation", request.request_id(), request);
   const auto earlier = backend.store.find_request(key);
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) return show_made_before(backend, **earlier, request.start());
 
   if (absl::Status small = check_size(request.spec(), backend.options.sizes); !small.ok()) return small;
-  auto place = backend.sessions.reserve(record->tenant);
+  auto place = backend.sessions.reserve(record.tenant);
   if (!place.ok()) return place.status();
-  auto simulation = make_simulation(backend, record->model, request.spec());
+  auto simulation = make_simulation(backend, record.model, std::move(order->plan));
   if (!simulation.ok()) return simulation.status();
   if (absl::Status room = place->claim((*simulation)->memory_bytes()); !room.ok()) return room;
   if (absl::Status wanted = check_wanted(unwanted); !wanted.ok()) return wanted;
-  if (request.validate_only()) return show_checked(backend, *record, request.spec(), *std::move(simulation));
-  const auto kept = backend.store.create_simulation(*record, key);
+  if (request.validate_only()) return show_checked(backend, record, request.spec(), *std::move(simulation));
+  const auto kept = backend.store.create_simulation(record, key);
   if (!kept.ok()) return kept.status();
-  if (kept->id != record->id) return show_made_before(backend, simulation_name(kept->id), request.start());
-  const auto epoch = static_cast<uint64_t>(record->create_time_us);
-  auto session = std::make_shared<Session>(make_session_options(backend, *record, epoch, request.spec()),
+  if (kept->id != record.id) return show_made_before(backend, simulation_name(kept->id), request.start());
+  const auto epoch = static_cast<uint64_t>(record.create_time_us);
+  auto session = std::make_shared<Session>(make_session_options(backend, record, epoch, request.spec()),
                                            *std::move(simulation), backend.workers, backend.keeper);
-  return open_session(backend, *std::move(place), *record, std::move(session), request.start());
+  return open_session(backend, *std::move(place), record, std::move(session), request.start());
 }
 
 }  // namespace lipofill::server

@@ -19,6 +19,9 @@ absl::StatusOr<v1::Simulation> show_simulation(Backend& backend, const std::stri
 
 /// The core's simulation of a plan; the model may have to be built again. Field violations below "spec".
 absl::StatusOr<std::unique_ptr<simulation::Simulation>> make_simulation(Backend& backend, const std::string& model,
+                                                                        plan::SimulationSpec plan);
+/// The same for a plan that was kept.
+absl::StatusOr<std::unique_ptr<simulation::Simulation>> make_simulation(Backend& backend, const std::string& model,
                                                                         const v1::SimulationSpec& spec);
 SessionOptions make_session_options(const Backend& backend, const SimulationRecord& record, uint64_t epoch,
                                     const v1::SimulationSpec& spec);

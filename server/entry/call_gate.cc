@@ -88,7 +88,7 @@ absl::Status CallGate::admit(Call& call, const Metadata& metadata, const grpc::S
   const absl::Status admitted = admit_by_rule(call, metadata, context);
   if (absl::IsUnauthenticated(admitted) || absl::IsPermissionDenied(admitted)) {
     const auto hints = hints_of(admitted);
-    backend_.metrics.count_refused(hints ? hints->reason : "OTHER");
+    backend_.metrics.calls().count_refused(hints ? hints->reason : "OTHER");
   }
   return admitted;
 }
@@ -154,7 +154,7 @@ absl::Status CallGate::begin(Call& call) {
   call.begun = kept.ok();
   if (kept.ok()) return kept;
   spdlog::error("the audit log cannot be written: {}", std::string(kept.message()));
-  backend_.metrics.count_refused("AUDIT_UNAVAILABLE");
+  backend_.metrics.calls().count_refused("AUDIT_UNAVAILABLE");
   return with_hints(absl::UnavailableError("the audit log cannot be written; nothing is changed without it"),
                     {"AUDIT_UNAVAILABLE", 5.0});
 }

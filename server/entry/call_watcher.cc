@@ -28,7 +28,7 @@ class CallWatcher : public grpc::experimental::Interceptor {
         context_(*info.server_context()),
         call_(shared_call(context_)),
         metrics_(metrics),
-        counts_(metrics.of_method(method_)),
+        counts_(metrics.calls().of_method(method_)),
         gate_(gate) {
     call_->method = method_;
     counts_.started.Increment();
@@ -79,7 +79,7 @@ class CallWatcher : public grpc::experimental::Interceptor {
     const std::string code_name = absl::StatusCodeToString(code);
     counts_.in_flight.Decrement();
     counts_.seconds.Observe(seconds);
-    metrics_.count_handled(method_, code_name);
+    metrics_.calls().count_handled(method_, code_name);
     LogFields fields = {{"method", method_}, {"code", code_name}, {"duration_ms", seconds * 1e3}};
     const LogFields of_call = call_->log_fields();
     fields.insert(fields.end(), of_call.begin(), of_call.end());

@@ -93,7 +93,7 @@ grpc::ServerWriteReactor<grpc::ByteBuffer>* FrameService::Watch(grpc::CallbackSe
   std::shared_ptr<WatchStream> stream;
   const absl::Status begun = guarded([&] { return begin(context, *request, stream); });
   if (!begun.ok()) {
-    stream = std::make_shared<WatchStream>(backend_.courier, backend_.metrics, "");
+    stream = std::make_shared<WatchStream>(backend_.courier, backend_.metrics.viewers(), "");
     stream->begin_failed(begun);
   }
   return stream.get();  // it holds itself until gRPC is done with it
@@ -112,7 +112,7 @@ absl::Status FrameService::begin(grpc::CallbackServerContext* context, const grp
     return shortage("TOO_MANY_VIEWERS", kRetryDelayS,
                     absl::StrCat("too many viewers are watching, the bound is ", backend_.options.max_viewers));
   }
-  stream = std::make_shared<WatchStream>(backend_.courier, backend_.metrics, request->known_topology_hash(),
+  stream = std::make_shared<WatchStream>(backend_.courier, backend_.metrics.viewers(), request->known_topology_hash(),
                                          std::move(place));
   if (const auto& expires = call_of(context).principal.expires) stream->end_at(to_steady(*expires));
   if (const auto session = backend_.sessions.hold(*id); session != nullptr) {
@@ -156,10 +156,10 @@ absl::Status FrameService::watch_session(const v1::WatchRequest& request, const 
   });
   const std::string id = session->id();
   if (!request.viewer().empty()) viewers_.add(id, request.viewer(), viewer);
-  backend_.metrics.count_viewer_come();
+  backend_.metrics.viewers().count_come();
   const auto leave = [this, viewer, id, name = request.viewer()] {
     viewers_.remove(id, name, viewer);
-    backend_.metrics.count_viewer_gone();
+    backend_.metrics.viewers().count_gone();
   };
   const bool begun = stream->begin(viewer, heartbeat_of(request), [session, viewer, leave] {
     session->unwatch(viewer);

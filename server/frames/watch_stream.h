@@ -4,7 +4,6 @@
 #include <grpcpp/support/server_callback.h>
 
 #include <atomic>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -12,15 +11,16 @@
 #include <string>
 
 #include "server/backend/kept_result.h"
-#include "server/ops/metrics.h"
+#include "server/frames/outgoing_messages.h"
+#include "server/frames/stream_clock.h"
+#include "server/ops/viewer_metrics.h"
 #include "server/sessions/courier.h"
 #include "server/sessions/viewer.h"
-#include "server/wire/frame_encoding.h"
 
 namespace lipofill::server {
 
 /// The server's side of one Watch: takes what its viewer holds and writes it, one message at a time, as fast as the
-/// client reads. Messages share their bytes with those of other viewers.
+/// client reads, or a heartbeat (StreamClock) where there is nothing.
 ///
 /// It keeps itself alive from begin() until gRPC is done with it.
 class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
@@ -28,15 +28,12 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
                     public std::enable_shared_from_this<WatchStream> {
  public:
   /// `place` is let go of when gRPC is done with the stream.
-  WatchStream(Courier& courier, Metrics& metrics, std::string known_topology_hash,
+  WatchStream(Courier& courier, ViewerMetrics& metrics, std::string known_topology_hash,
               std::shared_ptr<void> place = nullptr)
-      : courier_(courier),
-        metrics_(metrics),
-        known_topology_hash_(std::move(known_topology_hash)),
-        place_(std::move(place)) {}
+      : courier_(courier), place_(std::move(place)), outgoing_(metrics, std::move(known_topology_hash)) {}
 
   /// Sets the time at which the stream ends with UNAUTHENTICATED; to be called before it begins.
-  void end_at(Courier::Clock::time_point time) { expires_ = time; }
+  void end_at(Courier::Clock::time_point time) { clock_.set_end(time); }
 
   /// A stream that shows what a session puts into the viewer, and a heartbeat where that was nothing for so long.
   /// `on_done` is called once, at the end. False, and nothing is shown, when the client left while it was held.
@@ -61,13 +58,9 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
  private:
   void advance(std::unique_lock<std::mutex> lock);
   void fetch();
-  void queue_meshes(const std::shared_ptr<const EncodedMessages>& meshes);
-  void queue_frame(const std::shared_ptr<const EncodedMessages>& frame, uint64_t skipped);
-  void queue_due_heartbeat();
+  void send_due_heartbeat();
 
   Courier& courier_;
-  Metrics& metrics_;
-  const std::string known_topology_hash_;
   std::shared_ptr<void> place_;
   std::shared_ptr<WatchStream> self_;
   std::function<void()> on_done_;
@@ -75,14 +68,8 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
 
   std::mutex mutex_;
   std::shared_ptr<Viewer> viewer_;
-  Courier::Clock::duration heartbeat_{};
-  Courier::Clock::time_point last_sent_{};
-  Courier::Clock::time_point expires_ = Courier::Clock::time_point::max();
-  std::optional<Courier::Clock::time_point> alarm_;  ///< when it is woken to send a heartbeat
-  uint64_t sent_epoch_ = 0;
-  uint64_t sent_sequence_ = 0;
-  std::string topology_hash_;
-  std::deque<grpc::ByteBuffer> outgoing_;
+  StreamClock clock_;
+  OutgoingMessages outgoing_;
   grpc::ByteBuffer at_hand_;
   bool writing_ = false;
   bool cancelled_ = false;

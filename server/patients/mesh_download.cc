@@ -3,7 +3,7 @@
 #include <functional>
 #include <utility>
 
-#include "core/base/units.h"
+#include "core/geometry/mesh_topology.h"
 #include "server/backend/scan_reading.h"
 #include "server/entry/unary.h"
 #include "server/wire/frame_encoding.h"
@@ -11,56 +11,6 @@
 
 namespace lipofill::server {
 namespace {
-
-std::vector<float> to_points_mm(const Eigen::Matrix3Xd& points) {
-  std::vector<float> values;
-  values.reserve(static_cast<size_t>(points.size()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(points(c, i) * kMillimetresPerMetre));
-  }
-  return values;
-}
-
-template <typename Visit>
-void for_each_column(const geometry::LayeredGrid& grid, Visit&& visit) {
-  for (int j = 0; j < grid.n_eta; ++j) {
-    for (int i = 0; i < grid.n_xi; ++i) visit(i, j);
-  }
-}
-
-simulation::MeshTopology make_skin(const geometry::LayeredGrid& grid) {
-  simulation::MeshTopology mesh{"skin", to_points_mm(grid.nodes.leftCols(grid.nodes_per_level())), {}, 4};
-  for_each_column(grid, [&](int i, int j) {
-    for (const int node :
-         {grid.node(0, i, j), grid.node(0, i + 1, j), grid.node(0, i + 1, j + 1), grid.node(0, i, j + 1)}) {
-      mesh.cells.push_back(static_cast<uint32_t>(node));
-    }
-  });
-  return mesh;
-}
-
-simulation::MeshTopology make_tissue(const geometry::LayeredGrid& grid) {
-  simulation::MeshTopology mesh{"tissue", to_points_mm(grid.nodes), {}, 8};
-  for (int level = 0; level + 1 < grid.n_levels(); ++level) {
-    for_each_column(grid, [&](int i, int j) {
-      for (const int l : {level + 1, level}) {  // the deep face first
-        for (const int node :
-             {grid.node(l, i, j), grid.node(l, i + 1, j), grid.node(l, i + 1, j + 1), grid.node(l, i, j + 1)}) {
-          mesh.cells.push_back(static_cast<uint32_t>(node));
-        }
-      }
-    });
-  }
-  return mesh;
-}
-
-simulation::MeshTopology make_scan(const geometry::SurfaceMesh& scan) {
-  simulation::MeshTopology mesh{"scan", to_points_mm(scan.points), {}, 3};
-  for (const auto& triangle : scan.triangles) {
-    for (const int vertex : triangle) mesh.cells.push_back(static_cast<uint32_t>(vertex));
-  }
-  return mesh;
-}
 
 /// Writes prepared slices one after the other.
 class DownloadStream : public grpc::ServerWriteReactor<v1::MeshSlice> {
@@ -89,7 +39,7 @@ class DownloadStream : public grpc::ServerWriteReactor<v1::MeshSlice> {
 
 using Slices = absl::StatusOr<std::vector<v1::MeshSlice>>;
 
-std::vector<v1::MeshSlice> slice_all(std::vector<simulation::MeshTopology> meshes) {
+std::vector<v1::MeshSlice> slice_all(std::vector<geometry::MeshTopology> meshes) {
   Topology topology;
   topology.meshes = std::move(meshes);
   std::vector<std::string> all;
@@ -100,7 +50,7 @@ std::vector<v1::MeshSlice> slice_all(std::vector<simulation::MeshTopology> meshe
 Slices slice_model(Backend& backend, const std::string& name) {
   const auto model = backend.load_model(name);
   if (!model.ok()) return model.status();
-  return slice_all(make_model_meshes(**model));
+  return slice_all(geometry::make_model_meshes((*model)->geometry));
 }
 
 Slices slice_scan(Backend& backend, const std::string& name) {
@@ -108,7 +58,7 @@ Slices slice_scan(Backend& backend, const std::string& name) {
   if (!ids.ok()) return ids.status();
   const auto surface = read_scan_surface(backend, ids->patient, ids->id);
   if (!surface.ok()) return surface.status();
-  return slice_all({make_scan(*surface)});
+  return slice_all({geometry::make_scan_mesh(*surface)});
 }
 
 /// Makes the slices on a thread for long calls and sends them, or says why it cannot.
@@ -137,13 +87,6 @@ grpc::ServerWriteReactor<v1::MeshSlice>* send_slices(Backend& backend, grpc::Cal
 }
 
 }  // namespace
-
-std::vector<simulation::MeshTopology> make_model_meshes(const model::FaceModel& model) {
-  std::vector<simulation::MeshTopology> meshes = {make_skin(model.geometry.grid)};
-  if (model.geometry.scan.n_vertices() > 0) meshes.push_back(make_scan(model.geometry.scan));
-  if (model.geometry.grid.n_layers() > 0) meshes.push_back(make_tissue(model.geometry.grid));
-  return meshes;
-}
 
 grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend, grpc::CallbackServerContext* context,
                                                              const v1::DownloadModelMeshRequest& request) {

@@ -2,17 +2,13 @@
 
 #include <grpcpp/support/server_callback.h>
 
-#include "core/model/face_model.h"
 #include "lipofill/v1/patient_service.pb.h"
 #include "server/backend/backend.h"
-#include "server/sessions/frame.h"
 
 namespace lipofill::server {
 
 /// The meshes of a model at rest: "skin" (quadrilaterals), "tissue" (hexahedra, not yet split by any film) and, where
 /// it has one, "scan".
-std::vector<simulation::MeshTopology> make_model_meshes(const model::FaceModel& model);
-
 grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend, grpc::CallbackServerContext* context,
                                                              const v1::DownloadModelMeshRequest& request);
 

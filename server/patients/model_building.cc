@@ -34,37 +34,48 @@ absl::Status check_complete(Backend& backend, const std::string& patient, const 
                          absl::StatusCode::kFailedPrecondition);
 }
 
-/// Checks a specification without building anything; names fields below "spec".
-absl::Status check_spec(Backend& backend, const std::string& patient, const v1::BuildModelRequest& request) {
+/// A model that is to be built: its specification as the client gave it and as the core takes it, yet without the
+/// surfaces of its scans.
+struct ModelOrder {
+  std::string patient;
+  v1::ModelSpec message;  ///< with the figures of its presets
+  model::FaceModelSpec spec;
+  ScanIds scans;
+};
+
+/// Checks a request without building anything; names fields below "spec".
+absl::StatusOr<ModelOrder> read_request(Backend& backend, const std::string& patient,
+                                        const v1::BuildModelRequest& request) {
   FieldViolations violations;
   if (!request.has_spec()) return field_violation("spec", "is missing");
   auto face = to_face_model_spec(request.spec());
   // It is enough here that there will be one.
   if (face.ok() && !request.spec().scan_region().bone_scan().empty()) face->bone.emplace();
   violations.absorb("spec", face.ok() ? model::check_face_model(*face) : face.status());
-  const auto scans = scans_of(patient, request.spec());
+  auto scans = scans_of(patient, request.spec());
   violations.absorb("spec", scans.status());
   if (!violations.empty()) return violations.to_status();
   if (absl::Status small = check_size(request.spec(), backend.options.sizes); !small.ok()) return small;
-  const absl::Status skin = check_complete(backend, patient, scans->skin, "spec.scan_region.scan");
-  if (!skin.ok()) return skin;
-  return check_complete(backend, patient, scans->bone, "spec.scan_region.bone_scan");
+  absl::Status complete = check_complete(backend, patient, scans->skin, "spec.scan_region.scan");
+  if (complete.ok()) complete = check_complete(backend, patient, scans->bone, "spec.scan_region.bone_scan");
+  if (!complete.ok()) return complete;
+  return ModelOrder{patient, fill_tissue_figures(request.spec()), *std::move(face), *std::move(scans)};
 }
 
-absl::StatusOr<ModelCache::Model> build(Backend& backend, const std::string& operation, const std::string& patient,
-                                        const v1::ModelSpec& message) {
+absl::StatusOr<ModelCache::Model> build(Backend& backend, const std::string& operation, const ModelOrder& order) {
   Operations& operations = backend.operations;
-  const bool has_scan = message.has_scan_region();
+  const bool has_scan = !order.scans.skin.empty();
   if (!operations.report(operation, 0.0, has_scan ? "reading the scan" : "building")) {
     return absl::CancelledError("the operation was cancelled");
   }
-  const auto spec = read_model_spec(backend, patient, message);
-  if (!spec.ok()) return with_prefix("spec", spec.status());
+  model::FaceModelSpec spec = order.spec;
+  const absl::Status read = read_scans(backend, order.patient, order.scans, spec);
+  if (!read.ok()) return with_prefix("spec", read);
   const double done = has_scan ? kScanFraction : 0.0;
   const auto progress = [&](double fraction, const char* stage) {
     return operations.report(operation, done + (1.0 - done) * fraction, stage);
   };
-  auto model = model::build_face_model(*spec, progress);
+  auto model = model::build_face_model(spec, progress);
   if (!model.ok()) return with_prefix("spec", model.status());
   // The last moment at which a cancellation leaves nothing behind.
   if (!operations.report(operation, 1.0, "keeping the model")) {
@@ -73,19 +84,17 @@ absl::StatusOr<ModelCache::Model> build(Backend& backend, const std::string& ope
   return model;
 }
 
-absl::StatusOr<std::string> build_and_keep(Backend& backend, const std::string& operation, const std::string& patient,
-                                           const v1::ModelSpec& message, const RequestKey& request) {
-  const auto model = build(backend, operation, patient, message);
+absl::StatusOr<std::string> build_and_keep(Backend& backend, const std::string& operation, const ModelOrder& order,
+                                           const RequestKey& request) {
+  const auto model = build(backend, operation, order);
   if (!model.ok()) return model.status();
-  const auto scans = scans_of(patient, message);
-  if (!scans.ok()) return scans.status();
   ModelRecord record;
-  record.patient = patient;
+  record.patient = order.patient;
   record.id = make_id('m');
-  record.scan = scans->skin;
-  record.bone_scan = scans->bone;
+  record.scan = order.scans.skin;
+  record.bone_scan = order.scans.bone;
   record.content_hash = (*model)->content_hash;
-  record.spec_message = fill_tissue_figures(message).SerializeAsString();
+  record.spec_message = order.message.SerializeAsString();
   record.report_message = to_model_report(**model).SerializeAsString();
   record.create_time_us = now_us();
   const auto kept = backend.store.create_model(record, request);
@@ -96,11 +105,10 @@ absl::StatusOr<std::string> build_and_keep(Backend& backend, const std::string& 
   return to_model(*kept).SerializeAsString();
 }
 
-void run_build(Backend& backend, const std::string& operation, const std::string& patient, const v1::ModelSpec& message,
-               const RequestKey& request) {
+void run_build(Backend& backend, const std::string& operation, const ModelOrder& order, const RequestKey& request) {
   absl::StatusOr<std::string> result = absl::UnknownError("");
   const absl::Status status = guarded([&] {
-    result = build_and_keep(backend, operation, patient, message, request);
+    result = build_and_keep(backend, operation, order, request);
     return result.status();
   });
   if (!status.ok()) {
@@ -124,11 +132,11 @@ absl::StatusOr<std::optional<OperationView>> find_earlier(Backend& backend, cons
 }
 
 /// The answer to a request that is only to be checked, when nothing is wrong with it.
-OperationView checked_only(const v1::BuildModelRequest& request) {
+OperationView checked_only(const ModelOrder& order) {
   v1::Model model;
-  *model.mutable_spec() = fill_tissue_figures(request.spec());
+  *model.mutable_spec() = order.message;
   OperationView view;
-  view.target = request.parent();
+  view.target = patient_name(order.patient);
   view.response_message = model.SerializeAsString();
   view.done = true;
   view.progress = 1.0;
@@ -153,8 +161,9 @@ absl::StatusOr<OperationView> start_model_build(Backend& backend, const Principa
   if (!patient.ok()) return patient.status();
   if (auto good = check_request_id(request.request_id()); !good.ok()) return good;
   if (const auto known = backend.store.get_patient(*patient); !known.ok()) return known.status();
-  if (const auto good = check_spec(backend, *patient, request); !good.ok()) return good;
-  if (request.validate_only()) return checked_only(request);
+  auto order = read_request(backend, *patient, request);
+  if (!order.ok()) return order.status();
+  if (request.validate_only()) return checked_only(*order);
   const RequestKey key = make_request_key(caller, "BuildModel", request.request_id(), request);
   const auto earlier = find_earlier(backend, *patient, key);
   if (!earlier.ok()) return earlier.status();
@@ -163,9 +172,8 @@ absl::StatusOr<OperationView> start_model_build(Backend& backend, const Principa
   if (!started.ok()) return started.status();
   if (!started->is_new) return started->operation;
   const std::string id = started->operation.id;
-  const bool taken = backend.builds.run(
-      [&backend, id, patient = *patient, spec = request.spec(), key] { run_build(backend, id, patient, spec, key); },
-      id);
+  const bool taken =
+      backend.builds.run([&backend, id, order = *std::move(order), key] { run_build(backend, id, order, key); }, id);
   if (!taken) {
     backend.operations.drop(id);
     return shortage(

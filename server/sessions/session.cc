@@ -1,36 +1,18 @@
 #include "server/sessions/session.h"
 
-#include <exception>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/base/units.h"
-#include "server/sessions/memory.h"
+#include "server/sessions/draining.h"
+#include "server/sessions/identifiers.h"
+#include "server/sessions/session_guard.h"
 #include "spdlog/spdlog.h"
 
 namespace lipofill::server {
 namespace {
 
-using simulation::Phase;
-
-constexpr auto kSlice = std::chrono::milliseconds(10);
-
-double seconds(WorkerPool::Clock::duration d) {
-  return std::chrono::duration<double>(d).count();
-}
-
-SimulationState state_of(Phase phase) {
-  switch (phase) {
-    case Phase::kRunning:
-      return SimulationState::kRunning;
-    case Phase::kSettled:
-      return SimulationState::kSettled;
-    case Phase::kFinished:
-      return SimulationState::kFinished;
-    case Phase::kFailed:
-      return SimulationState::kFailed;
-  }
-  return SimulationState::kFailed;
-}
+const std::vector<SimulationState> kNotEnded = {SimulationState::kReady, SimulationState::kRunning,
+                                                SimulationState::kPaused};
 
 }  // namespace
 
@@ -39,204 +21,279 @@ Session::Session(SessionOptions options, std::unique_ptr<simulation::Simulation>
     : options_(std::move(options)),
       workers_(workers),
       sink_(sink),
-      simulation_(std::move(simulation)),
-      epoch_(options_.epoch),
-      history_(std::move(history)),
-      wall_before_s_(history_.wall_s) {
-  const uint64_t step = simulation_->report().step;
-  catching_up_ = !history_.injections.empty() || history_.until_step > step || history_.stop_reason.has_value();
-  if (step > 0) saved_step_ = step;
-  view_.state = history_.state;
-  view_.n_hexahedra = simulation_->n_hexahedra();
-  view_.n_film_cells = simulation_->n_film_cells();
-  view_.n_dofs = simulation_->n_dofs();
-  if (options_.preview) view_.preview.emplace();
-  update_view();
+      run_(options_, std::move(simulation), std::move(history), sink) {}
+
+// ---- the way of a command, from the call to the step
+
+void Session::give(SessionCommand command) {
+  mailbox_.post([this, command = std::move(command)] { receive(command); });
 }
 
-// ---- mailbox
-
-void Session::post(Command command) {
-  queue(std::move(command));
-  carry_out_when_idle();
-}
-
-void Session::queue(Command command) {
-  const std::lock_guard lock(mailbox_mutex_);
-  mailbox_.push_back(std::move(command));
-}
-
-bool Session::mailbox_empty() const {
-  const std::lock_guard lock(mailbox_mutex_);
-  return mailbox_.empty();
-}
-
-// Carries out commands if it gets the lock. Whoever fails to get it may leave: its holder looks at
-// the mailbox again after letting go.
-void Session::carry_out_when_idle() {
-  while (!mailbox_empty()) {
-    const std::unique_lock lock(execution_, std::try_to_lock);
-    if (!lock.owns_lock()) return;
-    carry_out_commands();
+void Session::receive(const SessionCommand& command) {
+  idle_.note_use();
+  if (run_.is_catching_up() && !run_.is_suspended()) {
+    return mailbox_.defer([this, command] { receive(command); });
   }
+  answer(command.reply, [&]() -> absl::Status {
+    const auto repeated = sink_.was_kept(command.request);
+    if (!repeated.ok() || *repeated) return repeated.status();
+    const absl::Status fits = check_fits(command);
+    return fits.ok() ? command.act() : fits;
+  });
 }
 
-void Session::carry_out_commands() {
-  while (true) {
-    Command next;
-    {
-      const std::lock_guard lock(mailbox_mutex_);
-      if (mailbox_.empty()) return;
-      next = std::move(mailbox_.front());
-      mailbox_.pop_front();
-    }
-    next();
-  }
+absl::Status Session::check_fits(const SessionCommand& command) const {
+  if (run_.is_parked()) return just_parked();
+  if (run_.is_suspended()) return draining();
+  if (command.fits(run_.state())) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      absl::StrCat("cannot ", command.what, ": simulations/", options_.id, " is ", state_name(run_.state())));
 }
 
-// ---- running
-
-void Session::run() {
-  set_state(SimulationState::kRunning, "");
-  spdlog::info("simulations/{} runs from step {}", options_.id, view_.report.step);
-  schedule();
+CommandRecord Session::record_of(CommandKind kind, const std::string& payload) const {
+  return {options_.id, 0, kind, live().simulation()->report().step, payload, now_us()};
 }
 
-void Session::schedule() {
-  if (checkpoint_due_ == Clock::time_point()) {
-    checkpoint_due_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                         std::chrono::duration<double>(options_.checkpoint_interval_s));
-  }
-  if (scheduled_) return;
-  scheduled_ = true;
-  workers_.schedule(shared_from_this(), options_.tenant);
+absl::Status Session::keep_and_do(CommandKind kind, const std::string& payload, const RequestKey& request,
+                                  const std::function<void()>& act) {
+  const auto kept = sink_.keep_command(record_of(kind, payload), request);
+  if (kept.ok() && *kept) act();
+  return kept.status();
 }
 
-// Time in the queue is no time spent running, and real time begins with the first step.
-void Session::begin_clock() {
-  clock_runs_ = true;
-  running_since_ = Clock::now();
-  running_since_time_s_ = simulation_->report().time;
-}
-
-void Session::stop_clock() {
-  if (std::exchange(clock_runs_, false)) wall_before_s_ += seconds(Clock::now() - running_since_);
-}
-
-void Session::leave_running() {
-  stop_clock();
-  if (workers_.withdraw(*this)) scheduled_ = false;
+void Session::answer(const Reply& reply, const std::function<absl::Status()>& act) {
+  absl::StatusOr<SessionView> result = absl::UnknownError("");
+  const absl::Status done = guard_session(options_.id, [&]() -> absl::Status {
+    const absl::Status acted = act();
+    if (acted.ok()) result = complete(live().measure());
+    return acted;
+  });
+  if (!done.ok()) result = done;
+  reply(std::move(result));
 }
 
 WorkerPool::Next Session::take_turn() {
   WorkerPool::Next next;
-  {
-    const std::lock_guard lock(execution_);
-    carry_out_commands();
-    next = advance_slice();
+  mailbox_.act([this, &next] {
+    next = run_.advance_slice([this] { carry_out_commands(); });
+    if (!run_.is_catching_up()) mailbox_.queue_deferred();
     scheduled_ = next.kind != WorkerPool::Next::kNothing;
-  }
-  carry_out_when_idle();
+  });
   return next;
 }
 
-/// True when there is a step to take, now or when its time comes.
-bool Session::takes_steps() const {
-  return simulation_ != nullptr && !suspended_ && (catching_up_ || view_.state == SimulationState::kRunning);
+void Session::carry_out_commands() {
+  if (!run_.is_catching_up()) mailbox_.queue_deferred();
+  mailbox_.carry_out();
 }
 
-WorkerPool::Next Session::advance_slice() {
-  const Clock::time_point begin = Clock::now();
-  while (takes_steps()) {
-    if (catching_up_) catch_up();
-    if (!takes_steps()) break;
-    if (!clock_runs_) begin_clock();
-    const bool previews = preview_is_due() && !catching_up_;
-    const bool waits = options_.real_time && !previews && !catching_up_ && due_time() > Clock::now();
-    if (waits) return {WorkerPool::Next::kLater, due_time()};
-    try {
-      previews ? advance_preview() : advance_one_step();
-    } catch (const std::exception& error) {
-      finish(SimulationState::kFailed, absl::StrCat("step ", view_.report.step + 1, ": ", error.what()));
-    }
-    carry_out_commands();
-    checkpoint_when_due();
-    if (Clock::now() - begin >= kSlice) break;
+// ---- commands
+
+void Session::start(RequestKey request, Reply reply) {
+  const auto act = [this, request] { return keep_and_do(CommandKind::kStart, "", request, [this] { run(); }); };
+  give({"start", {SimulationState::kReady}, request, act, std::move(reply)});
+}
+
+void Session::pause(RequestKey request, Reply reply) {
+  const auto stand_still = [this] {
+    run_.pause();
+    withdraw();
+    // This comes after the answer, which need not wait for it.
+    mailbox_.queue([this] {
+      if (run_.keeps_its_state()) run_.save().IgnoreError();
+    });
+  };
+  const auto act = [this, request, stand_still] { return keep_and_do(CommandKind::kPause, "", request, stand_still); };
+  give({"pause", {SimulationState::kRunning}, request, act, std::move(reply)});
+}
+
+void Session::resume(RequestKey request, Reply reply) {
+  const auto act = [this, request] { return keep_and_do(CommandKind::kResume, "", request, [this] { run(); }); };
+  give({"resume", {SimulationState::kPaused}, request, act, std::move(reply)});
+}
+
+void Session::stop(std::string reason, RequestKey request, Reply reply) {
+  const auto act = [this, reason, request] {
+    return keep_and_do(CommandKind::kStop, reason, request, [this, &reason] {
+      withdraw();
+      run_.finish(SimulationState::kStopped, reason);
+    });
+  };
+  give({"stop", kNotEnded, request, act, std::move(reply)});
+}
+
+void Session::inject(InjectionOrder order, RequestKey request, Reply reply) {
+  const auto act = [this, order = std::move(order), request] { return add_injection(order, request); };
+  give({"inject", kNotEnded, request, act, std::move(reply)});
+}
+
+absl::Status Session::add_injection(const InjectionOrder& order, const RequestKey& request) {
+  const auto resolved = resolve(order);
+  if (!resolved.ok()) return resolved.status();
+  const CommandRecord record = record_of(CommandKind::kInject, order.message);
+  const auto kept = sink_.keep_injection(record, *resolved->spec.start, request);
+  if (!kept.ok() || !*kept) return kept.status();
+  live().inject(*resolved);
+  spdlog::info("simulations/{} takes an injection at step {}", options_.id, record.step);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<simulation::ResolvedInjection> Session::resolve(const InjectionOrder& order) const {
+  if (order.check != nullptr) {
+    if (absl::Status fits = order.check(); !fits.ok()) return fits;
   }
-  if (!takes_steps()) return {};
-  return {WorkerPool::Next::kAgain, {}};
+  return live().simulation()->resolve(order.spec);
 }
 
-Session::Clock::time_point Session::due_time() const {
-  const double ahead_s = simulation_->report().time - running_since_time_s_;
-  return running_since_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(ahead_s));
+void Session::foresee(InjectionOrder order, InjectionReply reply) {
+  const Finding<plan::InjectionSpec> foreseen(std::move(reply));
+  const auto act = [this, answer = foreseen.answer, order = std::move(order)] {
+    const auto resolved = resolve(order);
+    *answer = resolved.ok() ? absl::StatusOr<plan::InjectionSpec>(resolved->spec) : resolved.status();
+    return resolved.status();
+  };
+  give({"inject", kNotEnded, {}, act, foreseen.reply});
 }
 
-void Session::advance_one_step() {
-  const Clock::time_point begin = Clock::now();
-  simulation_->advance_step();
-  const double wall_ms = kMillisecondsPerSecond * seconds(Clock::now() - begin);
-  const Phase phase = simulation_->phase();
-  if (phase != Phase::kFailed) record_step(wall_ms);
-  if (phase != Phase::kRunning) return finish(state_of(phase), simulation_->reason());
-  show_to_viewers(false);
+void Session::restore(RestoreOrder order, RequestKey request, Reply reply) {
+  const auto shared = std::make_shared<RestoreOrder>(std::move(order));  // a command can be copied
+  give({"restore", kNotEnded, request, [this, shared, request] { return go_back(*shared, request); }, reply});
 }
 
-void Session::set_reason(std::string reason) {
-  const std::lock_guard lock(view_mutex_);
-  view_.reason = std::move(reason);
+absl::Status Session::go_back(RestoreOrder& order, const RequestKey& request) {
+  const CheckpointRecord& to = order.checkpoint;
+  const CommandRecord command{options_.id, 0, CommandKind::kRestore, to.step, to.id, now_us()};
+  const auto kept = sink_.keep_restore(command, run_.state(), order.spec_message, request);
+  if (kept.ok() && *kept) run_.go_back(to, std::move(order.simulation));
+  return kept.status();
 }
 
-void Session::set_state(SimulationState state, std::string reason) {
-  {
-    const std::lock_guard lock(view_mutex_);
-    view_.state = state;
-    view_.reason = std::move(reason);
-  }
-  if (simulation_ != nullptr) update_view();
+void Session::checkpoint(std::string checkpoint, RequestKey request, CheckpointReply reply) {
+  const Finding<CheckpointRecord> kept(std::move(reply));
+  const auto act = [this, answer = kept.answer, checkpoint = std::move(checkpoint), request] {
+    *answer = run_.keep_checkpoint(CheckpointKind::kAsked, checkpoint, request);
+    return answer->status();
+  };
+  give({"checkpoint", kNotEnded, {}, act, kept.reply});
 }
 
-void Session::finish(SimulationState state, const std::string& reason) {
-  leave_running();
-  try {
-    set_state(state, reason);
-    conclude();
-  } catch (const std::exception& error) {
-    spdlog::error("simulations/{}: its result is lost: {}", options_.id, error.what());
-    for (const auto& viewer : viewers_) viewer->close(absl::InternalError("the result of the simulation is lost"));
-  }
-  let_go();
+void Session::inspect(Reply reply) {
+  mailbox_.post([this, reply] {
+    // A result that could not be kept when it was made: there may be room by now.
+    if (has_ended(run_.state()) && !live().result_is_kept()) live().keep_result().IgnoreError();
+    answer(reply, [] { return absl::OkStatus(); });
+  });
 }
 
-/// Releases everything that only a simulation that has not ended needs.
-void Session::let_go() {
-  viewers_.clear();
-  simulation_ = nullptr;
-  preview_ = nullptr;
-  preview_frame_ = nullptr;
-  end_catching_up();
-  give_memory_back();
+void Session::abandon(std::function<absl::Status()> forget, Reply reply) {
+  mailbox_.post([this, forget, reply] {
+    answer(reply, [this, forget]() -> absl::Status {
+      if (const absl::Status forgotten = forget(); !forgotten.ok()) return forgotten;
+      withdraw();
+      run_.abandon();
+      mailbox_.queue_deferred();
+      return absl::OkStatus();
+    });
+  });
 }
 
-void Session::conclude() {
-  spdlog::info("simulations/{} is {} after {} steps, {:.3f} s simulated{}{}", options_.id, state_name(view_.state),
-               view_.report.step, view_.report.time, view_.reason.empty() ? "" : ": ", view_.reason);
-  judge_preview();
-  show_figures(full_view());
-  topology();
-  last_frame_ = make_frame({}, true);
-  if (const absl::Status kept = keep_result(); !kept.ok()) {
-    spdlog::error("simulations/{}: its result is not in the store: {}", options_.id, kept.ToString());
-  }
-  for (const auto& viewer : viewers_) viewer->offer(last_frame_);
+// ---- turns
+
+void Session::go_on() {
+  mailbox_.post([this] {
+    run_.go_on();
+    if (run_.takes_steps()) schedule();
+  });
 }
 
-absl::Status Session::keep_result() {
-  if (last_frame_ == nullptr) return absl::DataLossError("there is none");
-  absl::Status kept = flush_series();
-  if (kept.ok()) kept = sink_.ended(options_.id, cached_view(), *topology_, *last_frame_);
-  result_kept_ = kept.ok();
-  return kept;
+void Session::run() {
+  run_.run();
+  schedule();
+}
+
+void Session::schedule() {
+  if (std::exchange(scheduled_, true)) return;
+  workers_.schedule(shared_from_this(), options_.tenant);
+}
+
+void Session::withdraw() {
+  if (workers_.withdraw(*this)) scheduled_ = false;
+}
+
+// ---- rest
+
+Session::Clock::duration Session::idle_time() const {
+  const SimulationState state = live().figures().state();
+  const bool rests = state == SimulationState::kReady || state == SimulationState::kPaused;
+  return rests && mailbox_.empty() ? idle_.idle_time() : Clock::duration::zero();
+}
+
+std::shared_ptr<Session> hold(const std::shared_ptr<Session>& session) {
+  if (session == nullptr) return nullptr;
+  session->idle_.hold();
+  return std::shared_ptr<Session>(session.get(), [session](Session* held) { held->idle_.let_go(); });
+}
+
+bool Session::can_be_parked(Clock::duration idle) const {
+  return live().simulation() != nullptr && !run_.is_suspended() && !run_.is_catching_up() && !live().is_watched() &&
+         idle_time() >= idle;
+}
+
+void Session::park(std::chrono::duration<double> idle) {
+  mailbox_.post([this, idle] {
+    if (!can_be_parked(std::chrono::duration_cast<Clock::duration>(idle))) return;
+    const absl::Status parked = run_.park();
+    if (parked.ok() || absl::IsAborted(parked)) return;
+    spdlog::error("simulations/{} cannot be parked: {}", options_.id, parked.ToString());
+    idle_.note_use();  // try again after as long
+  });
+}
+
+void Session::suspend(Done done) {
+  mailbox_.post([this, done] {
+    run_.suspend();
+    mailbox_.carry_out_deferred();
+    const absl::Status saved = run_.save();
+    if (!saved.ok()) spdlog::error("simulations/{}: its state is not kept: {}", options_.id, saved.ToString());
+    done(saved);
+  });
+}
+
+// ---- figures and viewers
+
+SessionView Session::cached_view() const {
+  return complete(live().figures().copy());
+}
+
+SessionView Session::complete(SessionView view) const {
+  view.viewers = idle_.watchers();
+  view.queue_position = workers_.queue_position(*this);
+  return view;
+}
+
+void Session::watch(std::shared_ptr<Viewer> viewer) {
+  idle_.begin_watching();
+  mailbox_.post([this, viewer] {
+    if (run_.is_parked()) return viewer->close(just_parked());
+    const absl::Status shown = guard_session(options_.id, [&] {
+      live().watch(viewer);
+      return absl::OkStatus();
+    });
+    if (!shown.ok()) viewer->close(shown);
+  });
+}
+
+void Session::unwatch(std::shared_ptr<Viewer> viewer) {
+  idle_.end_watching();
+  mailbox_.post([this, viewer] { live().unwatch(viewer); });
+}
+
+void Session::capture(std::vector<std::string> meshes, CaptureReply reply) {
+  mailbox_.post([this, meshes, reply] { live().capture(meshes, reply); });
+}
+
+void Session::close_viewers(absl::Status status) {
+  mailbox_.post([this, status] { live().close_viewers(status); });
 }
 
 }  // namespace lipofill::server

@@ -1,71 +1,56 @@
-// The figures of a session: its view between two steps, and the rows of its series on their way to
-// the sink.
+#include "server/sessions/session_figures.h"
 
 #include <algorithm>
-#include <iterator>
-
-#include "server/sessions/session.h"
-#include "spdlog/spdlog.h"
+#include <utility>
 
 namespace lipofill::server {
-namespace {
 
-constexpr size_t kSeriesChunk = 500;
-/// Rows that wait for room in the store; more are lost.
-constexpr size_t kMostPending = 100'000;
-
-double median(std::vector<float> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+SessionFigures::SessionFigures(const simulation::Simulation& simulation, SimulationState state,
+                               const std::optional<PreviewView>& preview) {
+  view_.state = state;
+  view_.n_hexahedra = simulation.n_hexahedra();
+  view_.n_film_cells = simulation.n_film_cells();
+  view_.n_dofs = simulation.n_dofs();
+  view_.preview = preview;
 }
 
-}  // namespace
+SessionView SessionFigures::copy() const {
+  const std::lock_guard lock(mutex_);
+  return view_;
+}
 
-void Session::record_step(double wall_ms) {
+SimulationState SessionFigures::state() const {
+  const std::lock_guard lock(mutex_);
+  return view_.state;
+}
+
+void SessionFigures::set_state(SimulationState state, std::string reason) {
+  const std::lock_guard lock(mutex_);
+  view_.state = state;
+  view_.reason = std::move(reason);
+}
+
+void SessionFigures::set_reason(std::string reason) {
+  const std::lock_guard lock(mutex_);
+  view_.reason = std::move(reason);
+}
+
+void SessionFigures::set_preview(const std::optional<PreviewView>& preview) {
+  const std::lock_guard lock(mutex_);
+  view_.preview = preview;
+}
+
+void SessionFigures::count_step(const mechanics::StepCost& cost, double wall_ms) {
+  cost_.add(cost);
   step_ms_.push_back(static_cast<float>(wall_ms));
-  cost_.add(simulation_->report().cost);
-  update_view();
-  size_t n_pending = 0;
-  {
-    const std::lock_guard lock(view_mutex_);
-    pending_.push_back({simulation_->report(), wall_ms});
-    n_pending = pending_.size();
-  }
-  sink_.stepped({simulation_->report(), wall_ms});
-  if (n_pending % kSeriesChunk != 0) return;
-  if (const absl::Status kept = flush_series(); !kept.ok()) {
-    spdlog::error("simulations/{}: {} rows of its series wait: {}", options_.id, n_pending, kept.ToString());
-  }
-  if (n_pending < kMostPending) return;
-  spdlog::error("simulations/{}: {} rows of its series are lost", options_.id, n_pending);
-  forget_pending(n_pending);
 }
 
-// Rows leave `pending_` only once they are in the sink, so that a reader who looks here first and there next misses
-// none.
-absl::Status Session::flush_series() {
-  const std::vector<SeriesEntry> rows = pending_series(0);
-  if (rows.empty()) return absl::OkStatus();
-  if (const absl::Status kept = sink_.append_series(options_.id, rows); !kept.ok()) return kept;
-  forget_pending(rows.size());
-  return absl::OkStatus();
-}
-
-void Session::forget_pending(size_t n_rows) {
-  const std::lock_guard lock(view_mutex_);
-  pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(n_rows));
-}
-
-void Session::update_view() {
-  std::vector<simulation::ZoneReport> zones = simulation_->zone_reports();
-  std::vector<simulation::LigamentReport> ligaments = simulation_->ligament_reports();
-  std::vector<std::string> remarks = simulation_->remarks();
-  double wall_s = wall_before_s_;
-  if (clock_runs_) wall_s += std::chrono::duration<double>(Clock::now() - running_since_).count();
-  const std::lock_guard lock(view_mutex_);
-  view_.report = simulation_->report();
+void SessionFigures::measure(const simulation::Simulation& simulation, double wall_s) {
+  std::vector<simulation::ZoneReport> zones = simulation.zone_reports();
+  std::vector<simulation::LigamentReport> ligaments = simulation.ligament_reports();
+  std::vector<std::string> remarks = simulation.remarks();
+  const std::lock_guard lock(mutex_);
+  view_.report = simulation.report();
   view_.zones = std::move(zones);
   view_.ligaments = std::move(ligaments);
   view_.remarks = std::move(remarks);
@@ -73,34 +58,17 @@ void Session::update_view() {
   view_.cost = cost_;
 }
 
-/// Shows these figures from now on, when there is no simulation to take them from.
-void Session::show_figures(SessionView view) {
-  const std::lock_guard lock(view_mutex_);
+void SessionFigures::show(SessionView view) {
+  const std::lock_guard lock(mutex_);
   view_ = std::move(view);
 }
 
-SessionView Session::full_view() {
-  if (simulation_ != nullptr) update_view();
-  SessionView view = cached_view();
-  if (simulation_ != nullptr) view.state_hash = simulation_->state_hash();
-  view.step_ms_median = median(step_ms_);
-  return view;
-}
-
-SessionView Session::cached_view() const {
-  const std::lock_guard lock(view_mutex_);
-  SessionView view = view_;
-  view.viewers = watching_;
-  view.queue_position = workers_.queue_position(*this);
-  return view;
-}
-
-std::vector<SeriesEntry> Session::pending_series(uint64_t after_step) const {
-  const std::lock_guard lock(view_mutex_);
-  std::vector<SeriesEntry> rows;
-  std::copy_if(pending_.begin(), pending_.end(), std::back_inserter(rows),
-               [after_step](const SeriesEntry& row) { return row.report.step > after_step; });
-  return rows;
+double SessionFigures::step_ms_median() const {
+  if (step_ms_.empty()) return 0.0;
+  std::vector<float> sorted = step_ms_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
 }
 
 }  // namespace lipofill::server

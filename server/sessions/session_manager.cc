@@ -139,32 +139,20 @@ void SessionManager::bring_back(const std::string& tenant, uint64_t bytes, std::
   session->go_on();
 }
 
-absl::Status SessionManager::ask_all(const Act& act) const {
-  std::vector<std::future<absl::Status>> answers;
-  for (const auto& session : all()) {
-    auto done = std::make_shared<std::promise<absl::Status>>();
-    answers.push_back(done->get_future());
-    act(*session, [done](absl::Status status) { done->set_value(std::move(status)); });
-  }
-  absl::Status all;
-  for (auto& answer : answers) all.Update(answer.get());
-  return all;
-}
-
-absl::Status SessionManager::checkpoint_all() {
-  return ask_all([](Session& session, Session::Done done) { session.save(std::move(done)); });
-}
-
 void SessionManager::suspend_all() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
-  // State that could not be kept is in the log; the simulation then goes on from an earlier one.
-  ask_all([](Session& session, Session::Done done) {
-    session.close_viewers(draining());
-    session.suspend(std::move(done));
-  }).IgnoreError();
+  std::vector<std::future<void>> answers;
+  for (const auto& session : all()) {
+    session->close_viewers(draining());
+    // State that could not be kept is in the log; the simulation then goes on from an earlier one.
+    const auto done = std::make_shared<std::promise<void>>();
+    answers.push_back(done->get_future());
+    session->suspend([done](const absl::Status&) { done->set_value(); });
+  }
+  for (auto& answer : answers) answer.get();
 }
 
 std::vector<SessionView> SessionManager::cached_views() const {

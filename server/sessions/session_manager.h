@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -60,8 +59,6 @@ class SessionManager {
   /// Adds one that was there before the daemon was started again, whatever the bounds, and lets it go on.
   void bring_back(const std::string& tenant, uint64_t bytes, std::shared_ptr<Session> session);
 
-  /// Has every session keep its state; they go on meanwhile. Returns when all are done, with the first error.
-  absl::Status checkpoint_all();
   /// Ends all sessions when the daemon ends: takes no more of them, ends viewers' streams with
   /// draining(), has every session keep its state and take no step or command any more. Returns
   /// when all are done.
@@ -78,10 +75,6 @@ class SessionManager {
     std::string tenant;
     uint64_t bytes = 0;
   };
-  using Act = std::function<void(Session& session, Session::Done done)>;
-  /// Has all sessions act, each in its own time, and waits for them; the first error.
-  absl::Status ask_all(const Act& act) const;
-
   // These must be called with the mutex held.
   void take(const std::string& tenant);
   void give_back(const std::string& tenant, uint64_t bytes);

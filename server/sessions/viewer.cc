@@ -1,7 +1,6 @@
 #include "server/sessions/viewer.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -37,7 +36,9 @@ Viewer::Viewer(ViewerOptions options, std::function<void()> wake)
     : options_(std::move(options)),
       wake_(std::move(wake)),
       selection_(options_.selection),
-      max_rate_hz_(options_.max_rate_hz) {
+      frames_(options_.delivery, options_.max_queued_bytes),
+      pace_(options_.interval_s, options_.max_rate_hz, options_.shares_rate),
+      acknowledgements_(options_.max_unacknowledged) {
   sort_out(selection_.fields);
 }
 
@@ -72,7 +73,7 @@ absl::Status Viewer::check_fields(const std::vector<std::string>& known) const {
 
 void Viewer::set_max_rate(double max_rate_hz) {
   const std::lock_guard lock(mutex_);
-  max_rate_hz_ = max_rate_hz;
+  pace_.set_max_rate(max_rate_hz);
 }
 
 void Viewer::show_topology(std::shared_ptr<const Topology> topology) {
@@ -85,23 +86,19 @@ void Viewer::show_topology(std::shared_ptr<const Topology> topology) {
 
 bool Viewer::wants(double time_s, bool at_rest, Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
-  if (end_ || (!at_rest && now < next_due_)) return false;
-  // Times are sums of steps: a frame may come a rounding before its due time.
-  return time_s >= next_due_s_ - 1e-9 * options_.interval_s;
+  return !end_ && pace_.is_due(time_s, at_rest, now);
 }
 
 void Viewer::offer(std::shared_ptr<const Frame> frame) {
   {
     const std::lock_guard lock(mutex_);
     if (end_) return;
-    if (options_.interval_s > 0.0 && !frame->preview) {
-      next_due_s_ = (std::floor(frame->time_s / options_.interval_s + 1e-9) + 1.0) * options_.interval_s;
-    }
+    if (!frame->preview) pace_.note_offered(frame->time_s);
     if (was_seen(*frame)) return;
     if (!frame->preview) offered_sequence_ = frame->sequence;
     const bool end = frame->end;
-    queue_frame(std::move(frame));
-    if (end && !end_) end_ = absl::OkStatus();
+    const absl::Status queued = frames_.push(std::move(frame));
+    if (end || !queued.ok()) end_ = queued;
   }
   wake_();
 }
@@ -116,33 +113,11 @@ bool Viewer::was_seen(const Frame& frame) const {
   return frame.preview ? frame.sequence < options_.seen_sequence : frame.sequence <= options_.seen_sequence;
 }
 
-/// A newer frame takes the place of an older one, but not of the preview: there is only one.
-void Viewer::skip_waiting_frames() {
-  const auto is_skipped = [](const std::shared_ptr<const Frame>& frame) { return !frame->preview; };
-  for (const auto& frame : frames_) queued_bytes_ -= is_skipped(frame) ? frame->size_bytes() : 0;
-  skipped_ += std::erase_if(frames_, is_skipped);
-}
-
 void Viewer::rewind() {
   const std::lock_guard lock(mutex_);
-  next_due_s_ = 0.0;
+  pace_.rewind();
   offered_sequence_.reset();
-  unacknowledged_.clear();
-}
-
-void Viewer::queue_frame(std::shared_ptr<const Frame> frame) {
-  const size_t bytes = frame->size_bytes();
-  if (options_.delivery == Delivery::kLatest) {
-    if (!frame->preview) skip_waiting_frames();
-  } else if (!frames_.empty() && queued_bytes_ + bytes > options_.max_queued_bytes) {
-    end_ = absl::ResourceExhaustedError(absl::StrCat("this viewer has ", frames_.size(), " frames (", queued_bytes_,
-                                                     " bytes) waiting, the bound is ", options_.max_queued_bytes,
-                                                     " bytes; read faster, set interval_ms, or watch with LATEST"));
-    frames_.clear();
-    return;
-  }
-  frames_.push_back(std::move(frame));
-  queued_bytes_ += bytes;
+  acknowledgements_.rewind();
 }
 
 void Viewer::close(absl::Status status) {
@@ -162,38 +137,20 @@ bool Viewer::closed() const {
 
 /// The last frame says that it is over, which every viewer may hear.
 bool Viewer::must_wait() const {
-  return options_.max_unacknowledged > 0 && unacknowledged_.size() >= options_.max_unacknowledged &&
-         !frames_.front()->end;
+  return acknowledgements_.must_wait() && !frames_.front().end;
 }
 
 FrameToSend Viewer::take_frame(Clock::time_point now) {
-  FrameToSend next{std::move(frames_.front()), std::exchange(skipped_, 0)};
-  frames_.pop_front();
-  queued_bytes_ -= next.frame->size_bytes();
-  sent_epoch_ = next.frame->epoch;
-  sent_sequence_ = next.frame->sequence;
-  if (options_.max_unacknowledged > 0) unacknowledged_.push_back(sent_sequence_);
-  if (max_rate_hz_ > 0.0) next_due_ = find_next_due(now);
+  FrameToSend next = frames_.pop();
+  acknowledgements_.note_sent(next.frame->epoch, next.frame->sequence);
+  pace_.note_taken(now);
   return next;
-}
-
-Viewer::Clock::time_point Viewer::find_next_due(Clock::time_point now) const {
-  const auto period = std::chrono::ceil<Clock::duration>(std::chrono::duration<double>(1.0 / max_rate_hz_));
-  if (!options_.shares_rate) return now + period;
-  return now + period - now.time_since_epoch() % period;
 }
 
 absl::Status Viewer::acknowledge(uint64_t epoch, uint64_t sequence) {
   {
     const std::lock_guard lock(mutex_);
-    if (epoch < sent_epoch_) return absl::OkStatus();  // under way when the simulation went back
-    if (epoch > sent_epoch_) {
-      return field_violation("epoch", absl::StrCat("is ", epoch, ", that of the frames sent is ", sent_epoch_));
-    }
-    if (sequence > sent_sequence_) {
-      return field_violation("sequence", absl::StrCat("is ", sequence, ", the last frame sent is ", sent_sequence_));
-    }
-    std::erase_if(unacknowledged_, [sequence](uint64_t sent) { return sent <= sequence; });
+    if (absl::Status known = acknowledgements_.acknowledge(epoch, sequence); !known.ok()) return known;
   }
   wake_();
   return absl::OkStatus();
@@ -201,7 +158,7 @@ absl::Status Viewer::acknowledge(uint64_t epoch, uint64_t sequence) {
 
 size_t Viewer::unacknowledged() const {
   const std::lock_guard lock(mutex_);
-  return unacknowledged_.size();
+  return acknowledgements_.on_their_way();
 }
 
 ToSend Viewer::take(Clock::time_point now) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -11,12 +10,13 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "server/sessions/acknowledgements.h"
 #include "server/sessions/frame.h"
+#include "server/sessions/frame_pace.h"
+#include "server/sessions/frame_queue.h"
 #include "server/sessions/selection.h"
 
 namespace lipofill::server {
-
-enum class Delivery { kLatest, kEvery };
 
 struct ViewerOptions {
   Delivery delivery = Delivery::kLatest;
@@ -34,23 +34,18 @@ struct ViewerOptions {
 struct TopologyToSend {
   std::shared_ptr<const Topology> topology;
 };
-struct FrameToSend {
-  std::shared_ptr<const Frame> frame;
-  uint64_t skipped = 0;  ///< frames left out before this one
-};
 /// The stream ends with this status.
 struct EndOfStream {
   absl::Status status;
 };
 using ToSend = std::variant<std::monostate, TopologyToSend, FrameToSend, EndOfStream>;
 
-/// Queue of what one watcher has yet to be sent. The session puts frames in and never waits; the
+/// What one watcher has yet to be sent: meshes, frames, the end. The session puts frames in and never waits; the
 /// stream takes them out as fast as its client reads.
 ///
-/// kLatest holds one frame, and the preview beside it: a newer one takes its place and the skipped one is counted.
-/// kEvery holds all up to a number of bytes; one frame more ends the stream with RESOURCE_EXHAUSTED. Where the client
-/// acknowledges frames, none but the last is taken while `max_unacknowledged` are on their way: what is taken after an
-/// acknowledgement is as new as that. Checked by tests/unit/server/sessions/viewer_test.cc.
+/// A queue that overflows (FrameQueue) ends the stream. Where the client acknowledges frames, none but the last is taken
+/// while `max_unacknowledged` are on their way: what is taken after an acknowledgement is as new as that.
+/// Checked by tests/unit/server/sessions/viewer_test.cc and tests/unit/server/sessions/viewer_options_test.cc.
 class Viewer {
  public:
   using Clock = std::chrono::steady_clock;
@@ -89,12 +84,7 @@ class Viewer {
 
  private:
   bool was_seen(const Frame& frame) const;
-  void skip_waiting_frames();
-  void queue_frame(std::shared_ptr<const Frame> frame);
   FrameToSend take_frame(Clock::time_point now);
-  /// The next moment a frame is due. It is the same for all viewers who share a rate, so that one
-  /// frame is made and encoded for all.
-  Clock::time_point find_next_due(Clock::time_point now) const;
   bool must_wait() const;
 
   const ViewerOptions options_;
@@ -103,16 +93,10 @@ class Viewer {
 
   mutable std::mutex mutex_;
   std::shared_ptr<const Topology> topology_;
-  std::deque<std::shared_ptr<const Frame>> frames_;
-  size_t queued_bytes_ = 0;
-  uint64_t skipped_ = 0;
-  double next_due_s_ = 0.0;
-  double max_rate_hz_ = 0.0;
-  Clock::time_point next_due_{};  ///< by max_rate_hz_
+  FrameQueue frames_;
+  FramePace pace_;
+  Acknowledgements acknowledgements_;
   std::optional<uint64_t> offered_sequence_;
-  std::deque<uint64_t> unacknowledged_;  ///< sequences, where max_unacknowledged is set
-  uint64_t sent_epoch_ = 0;
-  uint64_t sent_sequence_ = 0;
   std::optional<absl::Status> end_;
   bool end_taken_ = false;
 };

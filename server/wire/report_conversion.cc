@@ -1,39 +1,12 @@
 #include "server/wire/report_conversion.h"
 
-#include <Eigen/LU>
 #include <cmath>
 
 #include "core/base/units.h"
+#include "core/geometry/grid_volume.h"
 
 namespace lipofill::server {
 namespace {
-
-/// Volume of the hexahedra of a grid [m3]: det(J) at 2 x 2 x 2 Gauss points, exact for trilinear shapes.
-double compute_tissue_volume(const geometry::LayeredGrid& grid) {
-  const double g = 1.0 / std::sqrt(3.0);
-  double volume = 0.0;
-  for (int level = 0; level + 1 < grid.n_levels(); ++level) {
-    for (int j = 0; j < grid.n_eta; ++j) {
-      for (int i = 0; i < grid.n_xi; ++i) {
-        const auto at = [&](int a, int b, int c) -> Eigen::Vector3d {
-          return grid.nodes.col(grid.node(level + c, i + a, j + b));
-        };
-        for (int q = 0; q < 8; ++q) {
-          const double xi = (q & 1) ? g : -g, eta = (q & 2) ? g : -g, zeta = (q & 4) ? g : -g;
-          Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
-          for (int n = 0; n < 8; ++n) {
-            const double a = (n & 1) ? 1 : -1, b = (n & 2) ? 1 : -1, c = (n & 4) ? 1 : -1;
-            const Eigen::Vector3d gradient(a * (1 + b * eta) * (1 + c * zeta), b * (1 + a * xi) * (1 + c * zeta),
-                                           c * (1 + a * xi) * (1 + b * eta));
-            jacobian += at(n & 1, (n >> 1) & 1, (n >> 2) & 1) * gradient.transpose() / 8.0;
-          }
-          volume += std::abs(jacobian.determinant());
-        }
-      }
-    }
-  }
-  return volume;
-}
 
 void add_layers(const model::FaceModel& model, v1::ModelReport& report) {
   for (size_t l = 0; l < model.layers.size(); ++l) {
@@ -99,7 +72,7 @@ v1::ModelReport to_model_report(const model::FaceModel& model) {
   report.set_nodes(static_cast<uint32_t>(face.grid.nodes.cols()));
   report.set_min_scaled_jacobian(face.grid.min_scaled_jacobian);
   report.set_area_cm2(face.skin_area * kSquareCentimetresPerSquareMetre);
-  report.set_tissue_volume_ml(compute_tissue_volume(face.grid) * kMillilitresPerCubicMetre);
+  report.set_tissue_volume_ml(geometry::compute_grid_volume(face.grid) * kMillilitresPerCubicMetre);
   report.set_scan_vertices_in_patch(static_cast<uint32_t>(face.riders.size()));
   report.set_max_chart_deviation_mm(face.max_rider_distance * kMillimetresPerMetre);
   for (const std::string& remark : face.scan_remarks) report.add_scan_remarks(remark);

@@ -35,11 +35,12 @@ struct Case {
   }
 
   void add(const InjectionSpec& spec, double now = 0.0) {
-    const absl::Status status = schedule.add(*model, films, spec, now);
-    EXPECT_TRUE(status.ok()) << status;
+    auto placed = schedule.place(*model, films, spec, now);
+    ASSERT_TRUE(placed.ok()) << placed.status();
+    schedule.add(*std::move(placed));
   }
   std::string refusal(const InjectionSpec& spec, double now = 0.0) {
-    const std::vector<FieldViolation> all = field_violations_of(schedule.add(*model, films, spec, now));
+    const std::vector<FieldViolation> all = field_violations_of(schedule.place(*model, films, spec, now).status());
     EXPECT_EQ(all.size(), 1u);
     return all.empty() ? "" : all[0].field + ": " + all[0].description;
   }

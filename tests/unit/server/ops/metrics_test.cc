@@ -34,8 +34,8 @@ TEST(Metrics, CountStepsByPhaseWithTheRestUnderOther) {
   step.factorisations = 1;
   step.tissue_solves = 4;
   step.fallbacks = 3;
-  metrics.count_step(step);
-  metrics.count_step(step);
+  metrics.steps().count(step);
+  metrics.steps().count(step);
   const std::string text = text_of(metrics);
   for (const char* line :
        {"lipofill_steps_total 2", "lipofill_step_wall_seconds_sum 0.04", "lipofill_step_wall_seconds_count 2",
@@ -50,18 +50,18 @@ TEST(Metrics, CountStepsByPhaseWithTheRestUnderOther) {
 
 TEST(Metrics, CountViewersCallsAndCheckpoints) {
   Metrics metrics;
-  metrics.count_viewer_come();
-  metrics.count_viewer_come();
-  metrics.count_viewer_gone();
-  metrics.count_frame_sent(0);
-  metrics.count_frame_sent(5);
-  const MethodMetrics method = metrics.of_method("/a/B");
+  metrics.viewers().count_come();
+  metrics.viewers().count_come();
+  metrics.viewers().count_gone();
+  metrics.viewers().count_frame_sent(0);
+  metrics.viewers().count_frame_sent(5);
+  const MethodMetrics method = metrics.calls().of_method("/a/B");
   method.started.Increment();
   method.sent_bytes.Increment(100);
-  metrics.count_handled("/a/B", "NOT_FOUND");
-  metrics.count_checkpoint(0.01, 2000);
-  metrics.count_failed_checkpoint();
-  metrics.count_ended_simulation("SETTLED");
+  metrics.calls().count_handled("/a/B", "NOT_FOUND");
+  metrics.simulations().count_checkpoint(0.01, 2000);
+  metrics.simulations().count_failed_checkpoint();
+  metrics.simulations().count_ended("SETTLED");
   const std::string text = text_of(metrics);
   for (const char* line :
        {"lipofill_viewers 1", "lipofill_frames_sent_total 2", "lipofill_frames_skipped_total 5",

@@ -31,13 +31,12 @@ TEST_F(SessionTest, TheManagerBoundsAndStopsAll) {
   const auto viewer = std::make_shared<Viewer>(ViewerOptions{}, [] {});
   a->watch(viewer);
   while (a->cached_view().report.step == 0) std::this_thread::yield();
-  ASSERT_TRUE(manager.checkpoint_all().ok());
-  ASSERT_EQ(sink_.checkpoints.size(), 1u);
   EXPECT_FALSE(viewer->closed());
   manager.suspend_all();
   EXPECT_TRUE(viewer->closed());
   EXPECT_EQ(a->cached_view().state, SimulationState::kRunning) << "it is to go on";
   const uint64_t step = inspect(*a)->report.step;
+  ASSERT_EQ(sink_.checkpoints.size(), 1u);
   EXPECT_EQ(sink_.checkpoints.back().record.step, step);
   EXPECT_TRUE(absl::IsUnavailable(pause(*a).status()));
   std::this_thread::sleep_for(std::chrono::milliseconds(20));

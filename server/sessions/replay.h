@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "core/simulation/simulation.h"
+#include "server/store/records.h"
+
+namespace lipofill::server {
+
+/// The commands acknowledged before the daemon was started again that are not yet in the state the
+/// session goes on from. They take effect after the same steps as the first time.
+struct SessionHistory {
+  SimulationState state = SimulationState::kReady;
+  double wall_s = 0.0;  ///< spent RUNNING
+  struct Injection {
+    uint64_t step = 0;
+    plan::InjectionSpec spec;
+  };
+  std::deque<Injection> injections;
+  uint64_t until_step = 0;  ///< where the last command took effect
+  std::optional<std::string> stop_reason;
+  std::string note;  ///< what was not as it should be
+};
+
+/// Repeats a history step by step, until the simulation is where it was when the daemon ended.
+///
+/// Checked by tests/unit/server/sessions/replay_test.cc and tests/unit/server/sessions/session_resume_test.cc.
+class Replay {
+ public:
+  /// @param step  of the state that the session goes on from
+  Replay(SessionHistory history, uint64_t step);
+
+  bool under_way() const { return under_way_; }
+  /// Repeats what took effect after the step the simulation is at. DATA_LOSS, or what the simulation says, when
+  /// something cannot be repeated.
+  absl::Status repeat(simulation::Simulation& simulation);
+  /// True when nothing is left to repeat at this step or later, but for the stop.
+  bool has_caught_up(uint64_t step) const { return history_.injections.empty() && step >= history_.until_step; }
+  /// The reason of the stop that ended it, if one did.
+  const std::optional<std::string>& stop_reason() const { return history_.stop_reason; }
+  void end() { under_way_ = false; }
+
+  /// What is to be told of it as long as it is under way, and after: what was not as it should be.
+  std::string describe() const;
+  const std::string& note() const { return history_.note; }
+
+ private:
+  SessionHistory history_;
+  bool under_way_;
+};
+
+}  // namespace lipofill::server

@@ -41,9 +41,13 @@ std::array<bool, kNodePairs> order_of_nodes(const std::array<int, 8>& hexahedron
 }
 
 /// Hexahedra by the order of their nodes, each list in the order of the mesh.
-std::map<std::array<bool, kNodePairs>, std::vector<int>> sort_by_order(const HexMesh& mesh) {
+std::map<std::array<bool, kNodePairs>, std::vector<int>> sort_by_order(const HexMesh& mesh,
+                                                                       const std::vector<ElasticMaterial>& materials) {
   std::map<std::array<bool, kNodePairs>, std::vector<int>> sorted;
-  for (int e = 0; e < mesh.n_hexahedra(); ++e) sorted[order_of_nodes(mesh.hexahedra[e])].push_back(e);
+  for (int e = 0; e < mesh.n_hexahedra(); ++e) {
+    if (materials[mesh.material[e]].law != TissueLaw::kCorotational) continue;
+    sorted[order_of_nodes(mesh.hexahedra[e])].push_back(e);
+  }
   return sorted;
 }
 
@@ -60,7 +64,7 @@ void set_tension(const HexMesh& mesh, int e, const ElasticMaterial& material, in
 
 ElementAssembler::ElementAssembler(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
                                    const SystemPattern& pattern) {
-  const auto sorted = sort_by_order(mesh);
+  const auto sorted = sort_by_order(mesh, materials);
   size_t n_batches = 0;
   for (const auto& [order, hexahedra] : sorted) n_batches += (hexahedra.size() + kLanes - 1) / kLanes;
   hexahedra_.reserve(n_batches);

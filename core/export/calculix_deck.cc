@@ -185,12 +185,25 @@ void CalculixDeck::Content::add_elements() {
   }
 }
 
+namespace {
+
+/// The card of a law: E and nu, or C10 = mu/2 and D1 = 2/kappa in MPa.
+std::string write_law(const solid::ElasticMaterial& material) {
+  const double E = material.youngs_modulus * kMegapascalsPerPascal;
+  const double nu = material.poisson_ratio;
+  if (material.law == solid::TissueLaw::kCorotational) return absl::StrCat("*ELASTIC\n", number(E), ", ", number(nu));
+  const double mu = E / (2.0 * (1.0 + nu));
+  const double kappa = E / (3.0 * (1.0 - 2.0 * nu));
+  return absl::StrCat("*HYPERELASTIC, NEO HOOKE\n", number(0.5 * mu), ", ", number(2.0 / kappa));
+}
+
+}  // namespace
+
 void CalculixDeck::Content::add_materials() {
   for (size_t layer = 0; layer < layers.size(); ++layer) {
     const std::string name = layer_set(layer);
     const solid::ElasticMaterial& material = layers[layer].material;
-    add(absl::StrCat("*MATERIAL, NAME=", name, "\n*ELASTIC\n", number(material.youngs_modulus * kMegapascalsPerPascal),
-                     ", ", number(material.poisson_ratio), "\n*DENSITY\n",
+    add(absl::StrCat("*MATERIAL, NAME=", name, "\n", write_law(material), "\n*DENSITY\n",
                      number(material.density * kTonnesPerCubicMillimetrePerKilogramPerCubicMetre),
                      "\n*SOLID SECTION, ELSET=", name, ", MATERIAL=", name, "\n"));
   }

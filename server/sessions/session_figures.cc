@@ -82,7 +82,10 @@ void Session::show_figures(SessionView view) {
 SessionView Session::full_view() {
   if (simulation_ != nullptr) update_view();
   SessionView view = cached_view();
-  if (simulation_ != nullptr) view.state_hash = simulation_->state_hash();
+  if (simulation_ != nullptr) {
+    view.state_hash = simulation_->state_hash();
+    view.layers = simulation_->layer_reports();
+  }
   view.step_ms_median = median(step_ms_);
   return view;
 }

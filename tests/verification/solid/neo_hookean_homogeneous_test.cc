@@ -58,7 +58,7 @@ Tissue make_block(bool stacked, double nu) {
 }
 
 Case make_case() {
-  return Case({"solid/10a-neo-hookean", "Neo-Hookean block: uniaxial compression, simple shear",
+  return Case({"solid/11a-neo-hookean", "Neo-Hookean block: uniaxial compression, simple shear",
                "The law's closed forms; the elements are distorted, so this is a patch test at finite strain too."});
 }
 

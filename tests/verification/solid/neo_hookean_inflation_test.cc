@@ -131,13 +131,13 @@ void expect_inflation(const char* id, const char* title, int dimension, bool sta
 
 TEST(NeoHookeanSphere, IsInflatedAsInTheClosedForm) {
   for (const bool stacked : {false, true}) {
-    expect_inflation("solid/10b-neo-hookean-sphere", "Inflated thick neo-Hookean sphere", 3, stacked);
+    expect_inflation("solid/11b-neo-hookean-sphere", "Inflated thick neo-Hookean sphere", 3, stacked);
   }
 }
 
 TEST(NeoHookeanCylinder, IsInflatedAsInTheClosedForm) {
   for (const bool stacked : {false, true}) {
-    expect_inflation("solid/10c-neo-hookean-cylinder", "Inflated thick neo-Hookean cylinder", 2, stacked);
+    expect_inflation("solid/11c-neo-hookean-cylinder", "Inflated thick neo-Hookean cylinder", 2, stacked);
   }
 }
 

@@ -272,10 +272,9 @@ void CalculixDeck::Content::add_spring_set(const char* type, const std::string& 
   const size_t first = held.split.mesh.n_hexahedra() + n_springs + 1;
   n_springs += ends.size();
   const size_t n_ends = ends.size();
-  sections.push_back({absl::StrCat("*ELEMENT, TYPE=", type, ", ELSET=", set, "\n"), n_ends,
-                      [ends = std::move(ends), first](size_t k) {
-                        return absl::StrCat(first + k, ", ", ends[k], "\n");
-                      }});
+  sections.push_back(
+      {absl::StrCat("*ELEMENT, TYPE=", type, ", ELSET=", set, "\n"), n_ends,
+       [ends = std::move(ends), first](size_t k) { return absl::StrCat(first + k, ", ", ends[k], "\n"); }});
   add(absl::StrCat("*SPRING, ELSET=", set, "\n", directions, "\n",
                    number(stiffness * kNewtonsPerMillimetrePerNewtonPerMetre), "\n"));
 }

@@ -26,9 +26,8 @@ void for_each_node_pair(const Visit& visit) {
 
 inline NodeOrder find_node_order(const std::array<int, 8>& hexahedron) {
   NodeOrder before{};
-  for_each_node_pair([&](int a, int b, int pair) {
-    before[pair] = hexahedron[kCornerOfBinary[a]] < hexahedron[kCornerOfBinary[b]];
-  });
+  for_each_node_pair(
+      [&](int a, int b, int pair) { before[pair] = hexahedron[kCornerOfBinary[a]] < hexahedron[kCornerOfBinary[b]]; });
   return before;
 }
 

@@ -46,9 +46,9 @@ void NeoHookeanAssembler::add_batch(const HexMesh& mesh, const std::vector<Elast
                    materials[mesh.material[e]].poisson_ratio);
     if (is_left_over) batch.silence_lane(lane);
     for_each_node_pair([&](int a, int b, int pair) {
-      batch.block[pair][lane] =
-          is_left_over ? pattern.n_blocks()
-                       : pattern.find_block(mesh.hexahedra[e][kCornerOfBinary[a]], mesh.hexahedra[e][kCornerOfBinary[b]]);
+      batch.block[pair][lane] = is_left_over ? pattern.n_blocks()
+                                             : pattern.find_block(mesh.hexahedra[e][kCornerOfBinary[a]],
+                                                                  mesh.hexahedra[e][kCornerOfBinary[b]]);
     });
   }
 }

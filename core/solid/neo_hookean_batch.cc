@@ -75,8 +75,7 @@ LIPOFILL_INLINE void add_product(const Point& u, const Point& v, LaneMatrix3& A)
 }
 
 /// Adds the law's share of the mean gradient to the energy and to P = dW/dF.
-LIPOFILL_INLINE void add_homogeneous(const LaneMatrix3& C, const Lanes& least_J, NeoHookeanPose& pose,
-                                     LaneMatrix3& P) {
+LIPOFILL_INLINE void add_homogeneous(const LaneMatrix3& C, const Lanes& least_J, NeoHookeanPose& pose, LaneMatrix3& P) {
   const LaneMatrix3& F = pose.gradient;
   Lanes square{};
   for (const auto& row : F.m) {
@@ -110,12 +109,12 @@ LIPOFILL_INLINE Lanes compute_hourglass(bool is_stacked, const NeoHookeanPose& p
   const StrainPair along_zeta{w[1], g[0], w[2], g[1], g[2]};
   const StrainPairSlopes along_zeta_slopes{f[1], r[0], f[2], r[1], r[2]};
   energy += is_stacked ? add_plane_stress(moduli, along_zeta, along_zeta_slopes)
-                             : add_normal_stress_free(moduli, along_zeta, along_zeta_slopes);
+                       : add_normal_stress_free(moduli, along_zeta, along_zeta_slopes);
   const Moduli of_warping{kNinth * pose.shear, kNinth * pose.relaxed};
   energy += add_warping(of_warping, w[3], g[0], f[3], r[0]);
   energy += add_warping(of_warping, w[3], g[1], f[3], r[1]);
   energy += is_stacked ? add_warping(of_warping, w[3], g[2], f[3], r[2])
-                             : add_normal_warping(of_warping, w[3], g[2], f[3], r[2]);
+                       : add_normal_warping(of_warping, w[3], g[2], f[3], r[2]);
   return energy;
 }
 

@@ -66,20 +66,21 @@ struct NeoHookeanBatch {
 /// Intermediate values on the way to the forces, which the tangent goes on from.
 struct NeoHookeanPose {
   Lanes shear, bulk, relaxed;  ///< mu, kappa and lambda* times volume [J]
-  Lanes energy;             ///< W [J]
-  Lanes volume_ratio;       ///< det F
-  Lanes least_corner;       ///< least over the corners of det[e_1 e_2 e_3] [m3]
-  LaneMatrix3 gradient;     ///< F
-  LaneMatrix3 inverse;      ///< F^-T
-  Lanes isochoric;          ///< J^-2/3
-  Lanes volume_strain;      ///< v/V - 1
-  Vector3<Lanes> volume[8]; ///< 64 dv/ds_k
-  Vector3<Lanes> dual[3];   ///< g^i
+  Lanes energy;                ///< W [J]
+  Lanes volume_ratio;          ///< det F
+  Lanes least_corner;          ///< least over the corners of det[e_1 e_2 e_3] [m3]
+  LaneMatrix3 gradient;        ///< F
+  LaneMatrix3 inverse;         ///< F^-T
+  Lanes isochoric;             ///< J^-2/3
+  Lanes volume_strain;         ///< v/V - 1
+  Vector3<Lanes> volume[8];    ///< 64 dv/ds_k
+  Vector3<Lanes> dual[3];      ///< g^i
 };
 
 /// Adds dW/dx to `force`; both hold four numbers a node, the last of no meaning.
 /// @param modulus  Young's modulus of each lane [Pa]
-void add_neo_hookean_forces(const NeoHookeanBatch& batch, const Lanes& modulus, const double* x, NeoHookeanPose& pose, double* force);
+void add_neo_hookean_forces(const NeoHookeanBatch& batch, const Lanes& modulus, const double* x, NeoHookeanPose& pose,
+                            double* force);
 
 /// Adds a symmetric positive definite tangent to blocks in the layout of NodeBlocks:
 ///

@@ -116,8 +116,8 @@ class Tissue {
 
   std::shared_ptr<const TissueStructure> structure_;
   RayleighDamping damping_;
-  std::vector<double> youngs_moduli_;  ///< of each material [Pa]
-  std::vector<double> batch_moduli_;   ///< of each hexahedron, in the order of the batches [Pa]
+  std::vector<double> youngs_moduli_;       ///< of each material [Pa]
+  std::vector<double> batch_moduli_;        ///< of each hexahedron, in the order of the batches [Pa]
   std::vector<double> neo_hookean_moduli_;  ///< the same of neo-Hookean hexahedra
   std::vector<WallSpringState> springs_;
   Eigen::Matrix4Xd positions_;        ///< of the last assemble or compute_force; the last row is 0

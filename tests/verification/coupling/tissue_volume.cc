@@ -62,8 +62,9 @@ KeptVolume fill_disc(const std::shared_ptr<const model::FaceModel>& model, const
 }
 
 void expect_volume_kept(const model::FaceModelSpec& spec, const std::string& where) {
-  Case record({"coupled/11-tissue-volume", "Neo-Hookean tissue keeps its volume",
-               "1 mL in a disc 24 mm wide: the layers keep their volume within 0.5 %, and the skin rises by the fat's"});
+  Case record(
+      {"coupled/11-tissue-volume", "Neo-Hookean tissue keeps its volume",
+       "1 mL in a disc 24 mm wide: the layers keep their volume within 0.5 %, and the skin rises by the fat's"});
   const auto model = build_with_law(spec, TissueLaw::kNeoHookean);
   ASSERT_TRUE(model);
   for (const model::TissueLayerSpec& layer : spec.layers) {

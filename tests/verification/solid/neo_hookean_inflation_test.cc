@@ -105,9 +105,13 @@ Measured inflate(int dimension, int n, bool stacked) {
     work += force.head(dimension).dot(mesh.rest_positions.col(a).head(dimension));
   }
   // The inner face is of flat quadrilaterals: its own volume counts, dV/dlambda = dimension V/lambda.
-  const auto is_inner = [&](int e) { return radius(mesh.rest_positions.col(mesh.hexahedra[e][0])) < kInner + kTolerance; };
-  const double swept = compute_pressure_force(mesh, is_inner, true, 1.0).topRows(dimension).cwiseProduct(
-      mesh.rest_positions.topRows(dimension)).sum();
+  const auto is_inner = [&](int e) {
+    return radius(mesh.rest_positions.col(mesh.hexahedra[e][0])) < kInner + kTolerance;
+  };
+  const double swept = compute_pressure_force(mesh, is_inner, true, 1.0)
+                           .topRows(dimension)
+                           .cwiseProduct(mesh.rest_positions.topRows(dimension))
+                           .sum();
   double sum = 0.0;
   for (const int a : outer) sum += radius(state.x.col(a));
   return {work / (swept * std::pow(kStretch, dimension - 1)), sum / static_cast<double>(outer.size())};

@@ -136,18 +136,21 @@ std::vector<LigamentReport> Simulation::ligament_reports() const {
   return impl_->ligaments;
 }
 
-std::vector<LayerReport> Simulation::layer_reports() const {
+std::vector<LayerReport> Simulation::Impl::report_layers() const {
   std::vector<LayerReport> reports;
-  const Impl& impl = *impl_;
-  if (impl.stepper->tissue() == nullptr) return reports;
-  const solid::HexMesh& mesh = impl.stepper->tissue()->tissue.mesh();
-  const auto n_layers = static_cast<int>(impl.model->layers.size());
+  if (stepper->tissue() == nullptr) return reports;
+  const solid::HexMesh& mesh = stepper->tissue()->tissue.mesh();
+  const auto n_layers = static_cast<int>(model->layers.size());
   const std::vector<double> at_rest = solid::compute_volumes(mesh, mesh.rest_positions, n_layers);
-  const std::vector<double> now = solid::compute_volumes(mesh, impl.state.positions, n_layers);
+  const std::vector<double> now = solid::compute_volumes(mesh, state.positions, n_layers);
   for (int layer = 0; layer < n_layers; ++layer) {
-    reports.push_back({impl.model->layers[layer].name, at_rest[layer], now[layer]});
+    reports.push_back({model->layers[layer].name, at_rest[layer], now[layer]});
   }
   return reports;
+}
+
+std::vector<LayerReport> Simulation::layer_reports() const {
+  return impl_->report_layers();
 }
 
 std::vector<ZoneReport> Simulation::zone_reports() const {

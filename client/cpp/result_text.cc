@@ -89,6 +89,11 @@ std::string summary_text(const std::string& plan, const v1::Simulation& simulati
                           ligament.name(), ligament.tension_n(), ligament.largest_length_mm(), ligament.broken_points(),
                           ligament.points());
   }
+  for (const v1::LayerSummary& layer : s.layers()) {
+    absl::StrAppendFormat(&text, "  layer %-23s %.3f mL, %+.3f mL since rest (%+.2f %%)\n", layer.name(),
+                          layer.volume_ml(), layer.volume_ml() - layer.rest_volume_ml(),
+                          100.0 * (layer.volume_ml() / layer.rest_volume_ml() - 1.0));
+  }
   for (const v1::ZoneSummary& zone : s.zones()) {
     absl::StrAppendFormat(&text, "  zone %-24s %.2f mL, %.2f kPa mean, %.2f mm at most\n", zone.name(),
                           zone.volume_ml(), zone.mean_pressure_pa() / 1e3, zone.max_thickness_mm());

@@ -185,12 +185,25 @@ void CalculixDeck::Content::add_elements() {
   }
 }
 
+namespace {
+
+/// The card of a law: E and nu, or C10 = mu/2 and D1 = 2/kappa in MPa.
+std::string write_law(const solid::ElasticMaterial& material) {
+  const double E = material.youngs_modulus * kMegapascalsPerPascal;
+  const double nu = material.poisson_ratio;
+  if (material.law == solid::TissueLaw::kCorotational) return absl::StrCat("*ELASTIC\n", number(E), ", ", number(nu));
+  const double mu = E / (2.0 * (1.0 + nu));
+  const double kappa = E / (3.0 * (1.0 - 2.0 * nu));
+  return absl::StrCat("*HYPERELASTIC, NEO HOOKE\n", number(0.5 * mu), ", ", number(2.0 / kappa));
+}
+
+}  // namespace
+
 void CalculixDeck::Content::add_materials() {
   for (size_t layer = 0; layer < layers.size(); ++layer) {
     const std::string name = layer_set(layer);
     const solid::ElasticMaterial& material = layers[layer].material;
-    add(absl::StrCat("*MATERIAL, NAME=", name, "\n*ELASTIC\n", number(material.youngs_modulus * kMegapascalsPerPascal),
-                     ", ", number(material.poisson_ratio), "\n*DENSITY\n",
+    add(absl::StrCat("*MATERIAL, NAME=", name, "\n", write_law(material), "\n*DENSITY\n",
                      number(material.density * kTonnesPerCubicMillimetrePerKilogramPerCubicMetre),
                      "\n*SOLID SECTION, ELSET=", name, ", MATERIAL=", name, "\n"));
   }
@@ -259,10 +272,9 @@ void CalculixDeck::Content::add_spring_set(const char* type, const std::string& 
   const size_t first = held.split.mesh.n_hexahedra() + n_springs + 1;
   n_springs += ends.size();
   const size_t n_ends = ends.size();
-  sections.push_back({absl::StrCat("*ELEMENT, TYPE=", type, ", ELSET=", set, "\n"), n_ends,
-                      [ends = std::move(ends), first](size_t k) {
-                        return absl::StrCat(first + k, ", ", ends[k], "\n");
-                      }});
+  sections.push_back(
+      {absl::StrCat("*ELEMENT, TYPE=", type, ", ELSET=", set, "\n"), n_ends,
+       [ends = std::move(ends), first](size_t k) { return absl::StrCat(first + k, ", ", ends[k], "\n"); }});
   add(absl::StrCat("*SPRING, ELSET=", set, "\n", directions, "\n",
                    number(stiffness * kNewtonsPerMillimetrePerNewtonPerMetre), "\n"));
 }

@@ -17,7 +17,8 @@ namespace lipofill::exporting {
 ///
 ///     *NODE              all nodes at rest, doubled where a film opens: node n of the solver is n + 1
 ///     *ELEMENT C3D8I     hexahedron e of the solver is e + 1; the order of nodes is the same (HexMesh: 1-4 deep face,
-///                        5-8 skin); a set LAYER<k>_<NAME>, *MATERIAL and *SOLID SECTION a layer, linear elastic
+///                        5-8 skin); a set LAYER<k>_<NAME>, *MATERIAL and *SOLID SECTION a layer: *ELASTIC or,
+///                        for neo-Hookean layers, *HYPERELASTIC, NEO HOOKE
 ///     *BOUNDARY          FIXED: held in x, y and z; HELD_X, HELD_Y, HELD_Z: rollers; BONE: nodes of no element
 ///     SPRING1            elastic supports, to the rest position, a set each stiffness and component
 ///     *SURFACE           FILM<k>_<NAME>_OUTER and _INNER: the walls of each film on tissue, one face a quadrilateral

@@ -52,6 +52,17 @@ void add_prestress(Hasher& hasher, const std::vector<TissueLayerSpec>& layers) {
   for (const TissueLayerSpec& layer : layers) hasher.add(layer.material.prestress);
 }
 
+/// Adds the laws to the hash, at the end and only if one is not the paper's: such a model keeps the hash it had before
+/// layers had a law.
+void add_laws(Hasher& hasher, const std::vector<TissueLayerSpec>& layers) {
+  const auto is_other = [](const TissueLayerSpec& layer) {
+    return layer.material.law != solid::TissueLaw::kCorotational;
+  };
+  if (std::none_of(layers.begin(), layers.end(), is_other)) return;
+  hasher.add("laws");
+  for (const TissueLayerSpec& layer : layers) hasher.add(static_cast<int>(layer.material.law));
+}
+
 std::string compute_content_hash(const FaceModel& model) {
   Hasher hasher;
   hasher.add("lipofill face model 1");
@@ -86,6 +97,7 @@ std::string compute_content_hash(const FaceModel& model) {
   }
   hasher.add(model.is_square);
   add_prestress(hasher, model.layers);
+  add_laws(hasher, model.layers);
   return hasher.hex_digest();
 }
 

@@ -25,6 +25,7 @@ void add(Hasher& hasher, const solid::ElasticMaterial& material) {
   for (const double value : {material.poisson_ratio, material.density, material.prestress}) {
     hasher.add(value);
   }
+  hasher.add(static_cast<int>(material.law));
 }
 
 void add(Hasher& hasher, const solid::NodeSupports& supports) {

@@ -5,7 +5,6 @@
 #include "absl/strings/str_format.h"
 #include "core/base/units.h"
 #include "core/simulation/simulation_impl.h"
-#include "core/solid/hex_shape.h"
 
 namespace lipofill::simulation {
 namespace {
@@ -14,18 +13,6 @@ constexpr double kPoorScaledJacobian = 0.2;
 constexpr double kHighPressure = 10e3;     // [Pa]
 constexpr double kLargeVolumeLoss = 0.02;  // of the tissue
 constexpr double kPascalsPerMmhg = 133.322;
-
-/// Volume of the hexahedra at positions [m3]: 2 x 2 x 2 Gauss points, exact for trilinear shapes.
-double compute_volume(const solid::HexMesh& mesh, const Eigen::Matrix3Xd& x) {
-  double volume = 0.0;
-  for (int e = 0; e < mesh.n_hexahedra(); ++e) {
-    const solid::HexNodes nodes = mesh.gather(e, x);
-    for (const solid::LocalPoint& point : solid::hex_gauss_points()) {
-      volume += solid::compute_jacobian(nodes, point).determinant();
-    }
-  }
-  return volume;
-}
 
 }  // namespace
 
@@ -45,9 +32,11 @@ void Simulation::Impl::remark_on_result(std::vector<std::string>& remarks) const
                         "below %.1f its figures are not to be relied upon.",
                         report.min_scaled_jacobian, kPoorScaledJacobian));
   }
-  const solid::HexMesh& mesh = stepper->tissue()->tissue.mesh();
-  const double before = compute_volume(mesh, mesh.rest_positions);
-  const double change = compute_volume(mesh, state.positions) - before;
+  double before = 0.0, change = 0.0;
+  for (const LayerReport& layer : report_layers()) {
+    before += layer.rest_volume;
+    change += layer.volume - layer.rest_volume;
+  }
   if (std::abs(change) <= kLargeVolumeLoss * before) return;
   remarks.push_back(
       absl::StrFormat("The tissue %s %.1f %% of its volume (%.2f mL), which soft tissue keeps to %.0f %%.",

@@ -36,6 +36,13 @@ struct LigamentReport {
   int broken_points = 0;
 };
 
+/// The tissue of a layer, the hexahedra's own volume.
+struct LayerReport {
+  std::string name;
+  double rest_volume = 0.0;  ///< [m3]
+  double volume = 0.0;       ///< [m3]
+};
+
 /// Figures of the state after a step.
 struct StepReport {
   uint64_t step = 0;
@@ -117,6 +124,8 @@ class Simulation {
   /// What to know before relying on the figures, a sentence each: the remarks on the model and on its zones, and once it
   /// has ended a scaled Jacobian below 0.2, a pressure above 10 kPa, and tissue whose volume is off by more than 2 %.
   std::vector<std::string> remarks() const;
+  /// A report a layer, from the skin inwards; none for a model without layers.
+  std::vector<LayerReport> layer_reports() const;
 
   /// Adds an injection to the plan; without a start it begins now, or after the last one still due. Field violations
   /// named as in lipofill.v1.Injection. A settled or finished simulation does not take one: FAILED_PRECONDITION.

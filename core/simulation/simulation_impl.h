@@ -52,6 +52,7 @@ struct Simulation::Impl {
 
   void fill_report(const step::StepOutcome& outcome, double dt);
   void report_ligaments(const step::StepOutcome& outcome);
+  std::vector<LayerReport> report_layers() const;
   void remark_on_result(std::vector<std::string>& remarks) const;
   Eigen::Matrix3Xd skin_positions() const;
   Eigen::Matrix3Xd skin_displacement() const;

@@ -5,6 +5,7 @@
 
 #include "core/coupling/gap_volume.h"
 #include "core/simulation/simulation_impl.h"
+#include "core/solid/hex_volume.h"
 
 namespace lipofill::simulation {
 namespace {
@@ -133,6 +134,23 @@ void Simulation::Impl::report_ligaments(const step::StepOutcome& outcome) {
 
 std::vector<LigamentReport> Simulation::ligament_reports() const {
   return impl_->ligaments;
+}
+
+std::vector<LayerReport> Simulation::Impl::report_layers() const {
+  std::vector<LayerReport> reports;
+  if (stepper->tissue() == nullptr) return reports;
+  const solid::HexMesh& mesh = stepper->tissue()->tissue.mesh();
+  const auto n_layers = static_cast<int>(model->layers.size());
+  const std::vector<double> at_rest = solid::compute_volumes(mesh, mesh.rest_positions, n_layers);
+  const std::vector<double> now = solid::compute_volumes(mesh, state.positions, n_layers);
+  for (int layer = 0; layer < n_layers; ++layer) {
+    reports.push_back({model->layers[layer].name, at_rest[layer], now[layer]});
+  }
+  return reports;
+}
+
+std::vector<LayerReport> Simulation::layer_reports() const {
+  return impl_->report_layers();
 }
 
 std::vector<ZoneReport> Simulation::zone_reports() const {

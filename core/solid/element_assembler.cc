@@ -2,19 +2,16 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <map>
 
 #include "core/solid/geometric_stiffness.h"
+#include "core/solid/hexahedron_order.h"
 #include "core/solid/incompatible_modes.h"
 #include "core/solid/inversion_barrier.h"
 #include "core/solid/solid_shell.h"
 
 namespace lipofill::solid {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 ElasticMaterial at_unit_modulus(ElasticMaterial material) {
   material.youngs_modulus = 1.0;
@@ -29,21 +26,14 @@ HexStiffness compute_unit_stiffness(const HexMesh& mesh, int hexahedron,
                                   : compute_solid_shell_stiffness(nodes, D);
 }
 
-/// For each pair of nodes in binary order, true when the first comes before the second in the mesh.
-std::array<bool, kNodePairs> order_of_nodes(const std::array<int, 8>& hexahedron) {
-  std::array<bool, kNodePairs> before{};
-  for (int a = 0; a < 8; ++a) {
-    for (int b = 0; b < a; ++b) {
-      before[node_pair(a, b)] = hexahedron[kCornerOfBinary[a]] < hexahedron[kCornerOfBinary[b]];
-    }
-  }
-  return before;
-}
-
 /// Hexahedra by the order of their nodes, each list in the order of the mesh.
-std::map<std::array<bool, kNodePairs>, std::vector<int>> sort_by_order(const HexMesh& mesh) {
-  std::map<std::array<bool, kNodePairs>, std::vector<int>> sorted;
-  for (int e = 0; e < mesh.n_hexahedra(); ++e) sorted[order_of_nodes(mesh.hexahedra[e])].push_back(e);
+std::map<NodeOrder, std::vector<int>> sort_by_order(const HexMesh& mesh,
+                                                    const std::vector<ElasticMaterial>& materials) {
+  std::map<NodeOrder, std::vector<int>> sorted;
+  for (int e = 0; e < mesh.n_hexahedra(); ++e) {
+    if (materials[mesh.material[e]].law != TissueLaw::kCorotational) continue;
+    sorted[find_node_order(mesh.hexahedra[e])].push_back(e);
+  }
   return sorted;
 }
 
@@ -60,7 +50,7 @@ void set_tension(const HexMesh& mesh, int e, const ElasticMaterial& material, in
 
 ElementAssembler::ElementAssembler(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
                                    const SystemPattern& pattern) {
-  const auto sorted = sort_by_order(mesh);
+  const auto sorted = sort_by_order(mesh, materials);
   size_t n_batches = 0;
   for (const auto& [order, hexahedra] : sorted) n_batches += (hexahedra.size() + kLanes - 1) / kLanes;
   hexahedra_.reserve(n_batches);
@@ -90,14 +80,11 @@ void ElementAssembler::add_batch(const HexMesh& mesh, const std::vector<ElasticM
     force.set_lane(lane, mesh.hexahedra[e], mesh.gather(e, mesh.rest_positions), K);
     set_tension(mesh, e, materials[mesh.material[e]], lane, force);
     stiffness.set_lane(lane, K);
-    for (int a = 0; a < 8; ++a) {
-      for (int b = 0; b <= a; ++b) {
-        const int block = is_left_over ? pattern.n_blocks()
-                                       : pattern.find_block(mesh.hexahedra[e][kCornerOfBinary[a]],
-                                                            mesh.hexahedra[e][kCornerOfBinary[b]]);
-        stiffness.block[node_pair(a, b)][lane] = block;
-      }
-    }
+    for_each_node_pair([&](int a, int b, int pair) {
+      stiffness.block[pair][lane] = is_left_over ? pattern.n_blocks()
+                                                 : pattern.find_block(mesh.hexahedra[e][kCornerOfBinary[a]],
+                                                                      mesh.hexahedra[e][kCornerOfBinary[b]]);
+    });
   }
 }
 
@@ -114,33 +101,20 @@ std::vector<double> ElementAssembler::spread_moduli(const HexMesh& mesh, const s
 template <bool kWithStiffness>
 ElementTotals ElementAssembler::add_batches(const std::vector<double>& moduli, const Eigen::Matrix4Xd& x,
                                             Eigen::Matrix4Xd& force, std::vector<int>& squeezed, double* blocks) const {
-  Lanes energy{};
-  Lanes least_ratio = fill_lanes(kInfinity);
-  LaneMask is_folded{};
+  TotalsOfLanes totals;
   for (size_t k = 0; k < forces_.size(); ++k) {
     ElementPose pose;
     const Lanes modulus = load(moduli.data() + kLanes * k);
     add_element_forces(forces_[k], modulus, x.data(), pose, force.data());
-    energy += pose.energy;
-    const Lanes ratio = pose.volume_ratio - pose.volume_ratio == 0.0 ? pose.volume_ratio : fill_lanes(-kInfinity);
-    least_ratio = ratio < least_ratio ? ratio : least_ratio;
-    is_folded |= ~((pose.least_corner > 0.0) & (ratio > 0.0));
-    const LaneMask is_squeezed = ~(pose.least_corner >= forces_[k].squeezed_corner);
-    for (int lane = 0; any(is_squeezed) && lane < kLanes; ++lane) {
-      if (is_squeezed[lane] != 0 && hexahedra_[k][lane] >= 0) squeezed.push_back(hexahedra_[k][lane]);
-    }
+    totals.add(pose.energy, pose.volume_ratio, pose.least_corner);
+    list_squeezed(pose.least_corner, forces_[k].squeezed_corner, hexahedra_[k], squeezed);
     if (!kWithStiffness) continue;
     Lanes geometric[kNodePairs];
     compute_geometric_stiffness(forces_[k], modulus, pose.gradient, geometric);
     const StiffnessBatch& next = stiffness_[std::min(k + 1, stiffness_.size() - 1)];
     add_element_stiffness(stiffness_[k], next, pose, geometric, blocks);
   }
-  ElementTotals totals{0.0, kInfinity, any(is_folded)};
-  for (int lane = 0; lane < kLanes; ++lane) {
-    totals.elastic_energy += energy[lane];
-    totals.min_volume_ratio = std::min(totals.min_volume_ratio, least_ratio[lane]);
-  }
-  return totals;
+  return totals.sum();
 }
 
 ElementTotals ElementAssembler::add_forces(const std::vector<double>& moduli, const Eigen::Matrix4Xd& x,

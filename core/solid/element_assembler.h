@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "core/solid/element_batch.h"
@@ -17,6 +18,13 @@ struct ElementTotals {
   double min_volume_ratio =
       0.0;                 ///< least det F at the centres, infinity without hexahedra, minus infinity when not finite
   bool is_folded = false;  ///< whether a corner's or a centre's volume is not positive, or not finite
+
+  ElementTotals& operator+=(const ElementTotals& others) {
+    elastic_energy += others.elastic_energy;
+    min_volume_ratio = std::min(min_volume_ratio, others.min_volume_ratio);
+    is_folded = is_folded || others.is_folded;
+    return *this;
+  }
 };
 
 /// The hexahedra of a tissue in batches, and where in the system their numbers go. Positions and forces have four

@@ -1,5 +1,6 @@
 #include "core/solid/element_batch.h"
 
+#include "core/solid/hex_lanes.h"
 #include "core/solid/rotation.h"
 
 namespace lipofill::solid {
@@ -13,62 +14,6 @@ constexpr int kMaxRotationIterations = 12;
 // Below this share of its edges' product the determinant says little about the inverse.
 constexpr double kMinRelativeDeterminant = 1e-3;
 
-constexpr int kLinear[3] = {1, 2, 4};
-constexpr int kHourglass[4] = {3, 5, 6, 7};
-
-/// Positions of the nodes from the first of them on: sums of far coordinates would lose digits.
-LIPOFILL_INLINE void gather(const ElementBatch& batch, const double* x, Point (&nodes)[8]) {
-  for (int b = 0; b < 8; ++b) {
-    Lanes rows[kLanes];
-    for (int lane = 0; lane < kLanes; ++lane) rows[lane] = load(x + 4 * static_cast<ptrdiff_t>(batch.nodes[b][lane]));
-    transpose(rows);
-    nodes[b] = {rows[0], rows[1], rows[2]};
-  }
-  for (int b = 7; b >= 0; --b) nodes[b] = nodes[b] - nodes[0];
-}
-
-/// Least over the corners of the determinant of the three edges that meet there, along the local coordinates.
-LIPOFILL_INLINE Lanes find_least_corner(const Point (&x)[8]) {
-  Point along[3][8];
-  for (int k = 0; k < 3; ++k) {
-    for (int b = 0; b < 8; ++b) {
-      if (!(b & kLinear[k])) along[k][b] = along[k][b | kLinear[k]] = x[b | kLinear[k]] - x[b];
-    }
-  }
-  Lanes least = dot(along[0][0], cross(along[1][0], along[2][0]));
-  for (int b = 1; b < 8; ++b) {
-    const Lanes corner = dot(along[0][b], cross(along[1][b], along[2][b]));
-    least = least < corner ? least : corner;
-  }
-  return least;
-}
-
-/// Puts s_k of all modes in place of the nodes.
-LIPOFILL_INLINE void transform_to_modes(Point (&x)[8]) {
-  for (const int bit : kLinear) {
-    for (int b = 0; b < 8; ++b) {
-      if (b & bit) continue;
-      const Point low = x[b];
-      const Point high = x[b | bit];
-      x[b] = high + low;
-      x[b | bit] = high - low;
-    }
-  }
-}
-
-/// Puts sum_k h_k(b) f_k of all nodes in place of the modes.
-LIPOFILL_INLINE void transform_to_nodes(Point (&f)[8]) {
-  for (const int bit : kLinear) {
-    for (int b = 0; b < 8; ++b) {
-      if (b & bit) continue;
-      const Point even = f[b];
-      const Point odd = f[b | bit];
-      f[b] = even - odd;
-      f[b | bit] = even + odd;
-    }
-  }
-}
-
 LIPOFILL_INLINE void compute_gradient(const ElementBatch& batch, const Point (&modes)[8], LaneMatrix3& F) {
   const auto& J = batch.inverse_jacobian;
   const Point &s1 = modes[1], &s2 = modes[2], &s3 = modes[4];
@@ -79,27 +24,11 @@ LIPOFILL_INLINE void compute_gradient(const ElementBatch& batch, const Point (&m
   }
 }
 
-LIPOFILL_INLINE void cofactors(const LaneMatrix3& A, LaneMatrix3& C) {
-  for (int i = 0; i < 3; ++i) {
-    const int i1 = (i + 1) % 3;
-    const int i2 = (i + 2) % 3;
-    for (int j = 0; j < 3; ++j) {
-      const int j1 = (j + 1) % 3;
-      const int j2 = (j + 2) % 3;
-      C.m[i][j] = A.m[i1][j1] * A.m[i2][j2] - A.m[i1][j2] * A.m[i2][j1];
-    }
-  }
-}
-
-LIPOFILL_INLINE Lanes determinant(const LaneMatrix3& A, const LaneMatrix3& C) {
-  return multiply_add(A.m[0][2], C.m[0][2], multiply_add(A.m[0][1], C.m[0][1], A.m[0][0] * C.m[0][0]));
-}
-
 /// Takes one Newton step on R; returns the largest change of an entry.
 LIPOFILL_INLINE Lanes improve_rotation(LaneMatrix3& R) {
   LaneMatrix3 C;
-  cofactors(R, C);
-  const Lanes half_inverse = 0.5 / determinant(R, C);
+  compute_cofactors(R, C);
+  const Lanes half_inverse = 0.5 / compute_determinant(R, C);
   Lanes change{};
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -158,7 +87,7 @@ LIPOFILL_INLINE void compute_modal_coordinates(const ElementBatch& batch, const 
     q[3 + i] = stretch(i, j) + stretch(j, i);
   }
   for (int k = 0; k < 4; ++k) {
-    const Point& s = modes[kHourglass[k]];
+    const Point& s = modes[kHourglassModes[k]];
     for (int c = 0; c < 3; ++c) q[6 + 3 * k + c] = rotate_back(R, c, s.x, s.y, s.z) - batch.rest_hourglass[k][c];
   }
 }
@@ -214,19 +143,9 @@ LIPOFILL_INLINE void compute_modal_forces(const ElementBatch& batch, const LaneM
   for (int j = 0; j < 3; ++j) {
     const Lanes(&J)[3] = batch.inverse_jacobian[j];
     const auto row = [&](int i) { return multiply_add(A[i][2], J[2], multiply_add(A[i][1], J[1], A[i][0] * J[0])); };
-    f[kLinear[j]] = turn(row(0), row(1), row(2));
+    f[kLinearModes[j]] = turn(row(0), row(1), row(2));
   }
-  for (int k = 0; k < 4; ++k) f[kHourglass[k]] = turn(p[6 + 3 * k], p[7 + 3 * k], p[8 + 3 * k]);
-}
-
-LIPOFILL_INLINE void scatter(const ElementBatch& batch, const Point (&f)[8], double* force) {
-  for (int b = 0; b < 8; ++b) {
-    Lanes rows[kLanes] = {f[b].x, f[b].y, f[b].z, Lanes{}};
-    transpose(rows);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      add_to(rows[lane], force + 4 * static_cast<ptrdiff_t>(batch.nodes[b][lane]));
-    }
-  }
+  for (int k = 0; k < 4; ++k) f[kHourglassModes[k]] = turn(p[6 + 3 * k], p[7 + 3 * k], p[8 + 3 * k]);
 }
 
 /// (E R) K R^T.
@@ -251,33 +170,19 @@ LIPOFILL_INLINE void prefetch(const Lanes* block) {
   for (int k = 0; k < 9; k += 2) __builtin_prefetch(block + k);
 }
 
-/// Column by column, `geometric` behind the first.
-LIPOFILL_INLINE void scatter_block(const Lanes (&K)[3][3], bool is_transposed, const Lanes& geometric,
-                                   const std::int32_t (&places)[kLanes], double* blocks) {
-  for (int j = 0; j < 3; ++j) {
-    Lanes rows[kLanes];
-    for (int i = 0; i < 3; ++i) rows[i] = is_transposed ? K[j][i] : K[i][j];
-    rows[3] = j == 0 ? geometric : Lanes{};
-    transpose(rows);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      add_to(rows[lane], blocks + 12 * static_cast<ptrdiff_t>(places[lane]) + 4 * j);
-    }
-  }
-}
-
 }  // namespace
 
 void add_element_forces(const ElementBatch& batch, const Lanes& modulus, const double* x, ElementPose& pose,
                         double* force) {
   Point points[8];
-  gather(batch, x, points);
+  gather_nodes(batch.nodes, x, points);
   pose.least_corner = find_least_corner(points);
   transform_to_modes(points);
   LaneMatrix3& F = pose.gradient;
   compute_gradient(batch, points, F);
   LaneMatrix3 C;
-  cofactors(F, C);
-  pose.volume_ratio = determinant(F, C);
+  compute_cofactors(F, C);
+  pose.volume_ratio = compute_determinant(F, C);
   find_rotation(F, pose.volume_ratio, pose.rotation);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) pose.stiff_rotation.m[i][j] = modulus * pose.rotation.m[i][j];
@@ -287,7 +192,7 @@ void add_element_forces(const ElementBatch& batch, const Lanes& modulus, const d
   pose.energy = 0.5 * modulus * multiply(batch.modal_stiffness, q, p);
   compute_modal_forces(batch, pose.stiff_rotation, p, points);
   transform_to_nodes(points);
-  scatter(batch, points, force);
+  scatter_nodes(batch.nodes, points, force);
 }
 
 void add_element_stiffness(const StiffnessBatch& batch, const StiffnessBatch& next, const ElementPose& pose,

@@ -36,6 +36,34 @@ LIPOFILL_INLINE void turn_plane(int p, int q, int r, Lanes (&A)[6], Lanes (&V)[3
   }
 }
 
+/// Leaves the eigenvalues on A's diagonal and the eigenvectors in the columns of V.
+void diagonalise(Lanes (&A)[6], Lanes (&V)[3][3]) {
+  Lanes size{};
+  for (int k = 0; k < 6; ++k) size = multiply_add((k < 3 ? 1.0 : 2.0) * A[k], A[k], size);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) V[i][j] = fill_lanes(i == j ? 1.0 : 0.0);
+  }
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
+    const Lanes off = A[3] * A[3] + A[4] * A[4] + A[5] * A[5];
+    if (!any(off > kOffDiagonal * size)) break;
+    turn_plane(0, 1, 2, A, V);
+    turn_plane(1, 2, 0, A, V);
+    turn_plane(2, 0, 1, A, V);
+  }
+}
+
+/// Puts the matrix of those eigenvalues on A's diagonal that are positive in place of A.
+void compose_positive_part(const Lanes (&V)[3][3], Lanes (&A)[6]) {
+  Lanes positive[3];
+  for (int k = 0; k < 3; ++k) positive[k] = A[k] > 0.0 ? A[k] : Lanes{};
+  for (int k = 0; k < 6; ++k) {
+    const int i = k % 3;
+    const int j = k < 3 ? i : (i + 1) % 3;
+    A[k] = multiply_add(V[i][0] * positive[0], V[j][0],
+                        multiply_add(V[i][1] * positive[1], V[j][1], V[i][2] * positive[2] * V[j][2]));
+  }
+}
+
 /// Voigt entries of Vol S.
 LIPOFILL_INLINE void compute_stress(const ElementBatch& batch, const Lanes& modulus, const LaneMatrix3& F,
                                     Lanes (&S)[6]) {
@@ -80,26 +108,23 @@ LIPOFILL_INLINE Lanes sum_by_side(int node, const Lanes& v0, const Lanes& v1, co
 }  // namespace
 
 void take_positive_part(Lanes (&symmetric)[6]) {
-  Lanes(&A)[6] = symmetric;
-  Lanes size{};
-  for (int k = 0; k < 6; ++k) size = multiply_add((k < 3 ? 1.0 : 2.0) * A[k], A[k], size);
-  Lanes V[3][3]{};
-  for (int i = 0; i < 3; ++i) V[i][i] += 1.0;
-  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
-    const Lanes off = A[3] * A[3] + A[4] * A[4] + A[5] * A[5];
-    if (!any(off > kOffDiagonal * size)) break;
-    turn_plane(0, 1, 2, A, V);
-    turn_plane(1, 2, 0, A, V);
-    turn_plane(2, 0, 1, A, V);
+  Lanes V[3][3];
+  diagonalise(symmetric, V);
+  compose_positive_part(V, symmetric);
+}
+
+Lanes take_tension(Lanes (&stress)[6]) {
+  Lanes V[3][3];
+  diagonalise(stress, V);
+  Lanes least = stress[0], largest = stress[0];
+  for (int k = 1; k < 3; ++k) {
+    least = stress[k] < least ? stress[k] : least;
+    largest = stress[k] > largest ? stress[k] : largest;
   }
-  Lanes positive[3];
-  for (int k = 0; k < 3; ++k) positive[k] = A[k] > 0.0 ? A[k] : Lanes{};
-  for (int k = 0; k < 6; ++k) {
-    const int i = k % 3;
-    const int j = k < 3 ? i : (i + 1) % 3;
-    A[k] = multiply_add(V[i][0] * positive[0], V[j][0],
-                        multiply_add(V[i][1] * positive[1], V[j][1], V[i][2] * positive[2] * V[j][2]));
-  }
+  const Lanes share = least > 0.0 ? least : (largest < 0.0 ? largest : Lanes{});
+  for (int k = 0; k < 3; ++k) stress[k] -= share;
+  compose_positive_part(V, stress);
+  return share;
 }
 
 void compute_geometric_stiffness(const ElementBatch& batch, const Lanes& modulus, const LaneMatrix3& gradient,

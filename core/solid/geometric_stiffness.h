@@ -24,4 +24,8 @@ void compute_geometric_stiffness(const ElementBatch& batch, const Lanes& modulus
 /// rotations.
 void take_positive_part(Lanes (&symmetric)[6]);
 
+/// The positive part of `stress` - c I, in its place, and c: of the values between the least and the largest principal
+/// stress the one nearest to zero.
+Lanes take_tension(Lanes (&stress)[6]);
+
 }  // namespace lipofill::solid

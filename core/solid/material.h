@@ -7,12 +7,19 @@
 
 namespace lipofill::solid {
 
-/// Isotropic linear elasticity, under tension at rest (prestress.h).
+/// How stress follows from strain.
+enum class TissueLaw {
+  kCorotational,  ///< the paper's: linear between stress and strain in each element's rotated frame (tissue.h)
+  kNeoHookean,    ///< nearly incompressible at any strain (neo_hookean_batch.h)
+};
+
+/// Isotropic elasticity, under tension at rest (prestress.h). Constants are those at small strain.
 struct ElasticMaterial {
   double youngs_modulus = 0.0;  ///< E   [Pa]     > 0
   double poisson_ratio = 0.0;   ///< nu  [1]      in [0, 0.5)
   double density = 0.0;         ///< rho [kg/m3]  > 0
   double prestress = 0.0;       ///< sigma_0 [Pa] in the plane of the layer, >= 0
+  TissueLaw law = TissueLaw::kCorotational;
 };
 
 /// Adds a violation below `field` for each constant that is out of its bounds, not finite or not a number.

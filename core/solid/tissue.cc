@@ -48,6 +48,7 @@ absl::Status Tissue::set_youngs_moduli(const std::vector<double>& youngs_moduli)
   if (!status.ok()) return status;
   youngs_moduli_ = youngs_moduli;
   batch_moduli_ = structure_->elements().spread_moduli(mesh(), youngs_moduli);
+  neo_hookean_moduli_ = structure_->neo_hookean().spread_moduli(mesh(), youngs_moduli);
   return absl::OkStatus();
 }
 
@@ -55,6 +56,7 @@ void Tissue::assemble(const Eigen::Matrix3Xd& x, double dt) {
   begin(x);
   blocks_.set_zero();
   totals_ = structure_->elements().add(batch_moduli_, positions_, force_, squeezed_, blocks_);
+  totals_ += structure_->neo_hookean().add(neo_hookean_moduli_, positions_, force_, squeezed_, blocks_);
   finish_force();
   compose_system_matrix(dt);
 }
@@ -62,6 +64,7 @@ void Tissue::assemble(const Eigen::Matrix3Xd& x, double dt) {
 void Tissue::compute_force(const Eigen::Matrix3Xd& x) {
   begin(x);
   totals_ = structure_->elements().add_forces(batch_moduli_, positions_, force_, squeezed_);
+  totals_ += structure_->neo_hookean().add_forces(neo_hookean_moduli_, positions_, force_, squeezed_);
   finish_force();
 }
 

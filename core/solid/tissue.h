@@ -23,7 +23,7 @@ struct RayleighDamping {
 /// Young's modulus of each material [Pa].
 std::vector<double> youngs_moduli_of(const std::vector<ElasticMaterial>& materials);
 
-/// Corotational finite-element tissue:
+/// Finite-element tissue, each material corotational or neo-Hookean:
 ///
 ///     f_int(x) = sum_e R_e K_e (R_e^T x_e - X_e) + springs + prestress + barrier
 ///                        R_e: rotation of the element's centre, K_e = E_e times a constant (24, 24)
@@ -32,8 +32,9 @@ std::vector<double> youngs_moduli_of(const std::vector<ElasticMaterial>& materia
 /// with K_G the stiffness of tension: of what strain brings (geometric_stiffness.h), of what is there at rest
 /// (prestress.h), of springs across films (wall_springs.h) and of what is squeezed flat (inversion_barrier.h);
 /// after Mueller & Gross (2004); S is the paper's K of eq. 5. Mass is lumped by row sums, so that gravity on it is the
-/// consistent load. K_e is the solid-shell (solid_shell.h), in stacked layers EAS-9 (incompatible_modes.h). Degrees of
-/// freedom are the components of nodes that are not fixed, numbered node by node.
+/// consistent load. K_e is the solid-shell (solid_shell.h), in stacked layers EAS-9 (incompatible_modes.h). Hexahedra of
+/// neo-Hookean materials have dW/dx and its tangent in place of these terms (neo_hookean_batch.h). Degrees of freedom
+/// are the components of nodes that are not fixed, numbered node by node.
 ///
 /// The parts that never change are in a TissueStructure, which tissues share; a tissue itself holds values and Young's
 /// moduli. Deterministic: everything depends on the moduli and the last assemble alone, summed in an order that the
@@ -90,9 +91,9 @@ class Tissue {
   const Eigen::SparseMatrix<double>& system_matrix() const { return system_matrix_; }
 
   /// Elastic energy of the last assemble, 1/2 sum_e d_e^T K_e d_e + springs + prestress + barrier  [J]. Springs,
-  /// prestress and barrier are its exact slope in internal_force(); the elements' part is off by a share of the strain,
-  /// since the force leaves out how the rotations turn: 0.1 % in a distorted plate bent by 2 %
-  /// (tests/unit/solid/tissue_energy_test.cc).
+  /// prestress, barrier and neo-Hookean hexahedra are its exact slope in internal_force(); the part of corotational ones
+  /// is off by a share of the strain, since the force leaves out how the rotations turn: 0.1 % in a distorted plate bent
+  /// by 2 % (tests/unit/solid/tissue_energy_test.cc).
   double elastic_energy() const { return elastic_energy_; }
 
   /// Smallest det(F) over element centres at the last assemble; not positive: the element is turned inside out. Minus
@@ -115,8 +116,9 @@ class Tissue {
 
   std::shared_ptr<const TissueStructure> structure_;
   RayleighDamping damping_;
-  std::vector<double> youngs_moduli_;  ///< of each material [Pa]
-  std::vector<double> batch_moduli_;   ///< of each hexahedron, in the order of the batches [Pa]
+  std::vector<double> youngs_moduli_;       ///< of each material [Pa]
+  std::vector<double> batch_moduli_;        ///< of each hexahedron, in the order of the batches [Pa]
+  std::vector<double> neo_hookean_moduli_;  ///< the same of neo-Hookean hexahedra
   std::vector<WallSpringState> springs_;
   Eigen::Matrix4Xd positions_;        ///< of the last assemble or compute_force; the last row is 0
   Eigen::Matrix4Xd force_;            ///< f_int, a column a node; the last row has no meaning [N]

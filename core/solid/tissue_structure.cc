@@ -23,6 +23,7 @@ TissueStructure::TissueStructure(HexMesh mesh, const std::vector<ElasticMaterial
       n_materials_(static_cast<int>(materials.size())),
       pattern_(mesh_.n_nodes(), mesh_.hexahedra, supports.fixed, collect_coupled_nodes(springs)),
       elements_(mesh_, materials, pattern_),
+      neo_hookean_(mesh_, materials, pattern_),
       prestress_(mesh_, materials, pattern_),
       barrier_(mesh_),
       springs_(springs, mesh_.rest_positions, pattern_) {

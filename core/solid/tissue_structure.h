@@ -10,6 +10,7 @@
 #include "core/solid/hex_mesh.h"
 #include "core/solid/inversion_barrier.h"
 #include "core/solid/material.h"
+#include "core/solid/neo_hookean_assembler.h"
 #include "core/solid/prestress.h"
 #include "core/solid/system_pattern.h"
 #include "core/solid/wall_springs.h"
@@ -50,6 +51,7 @@ class TissueStructure {
   int n_materials() const { return n_materials_; }
   const SystemPattern& pattern() const { return pattern_; }
   const ElementAssembler& elements() const { return elements_; }
+  const NeoHookeanAssembler& neo_hookean() const { return neo_hookean_; }
   const Prestress& prestress() const { return prestress_; }
   const InversionBarrier& barrier() const { return barrier_; }
   const WallSprings& springs() const { return springs_; }
@@ -70,6 +72,7 @@ class TissueStructure {
   int n_materials_;
   SystemPattern pattern_;
   ElementAssembler elements_;
+  NeoHookeanAssembler neo_hookean_;
   Prestress prestress_;
   InversionBarrier barrier_;
   WallSprings springs_;

@@ -36,7 +36,10 @@ void LiveSimulation::set_state(SimulationState state, std::string reason) {
 SessionView LiveSimulation::measure() {
   if (simulation_ != nullptr) figures_.measure(*simulation_, clock_.wall_s());
   SessionView view = figures_.copy();
-  if (simulation_ != nullptr) view.state_hash = simulation_->state_hash();
+  if (simulation_ != nullptr) {
+    view.state_hash = simulation_->state_hash();
+    view.layers = simulation_->layer_reports();
+  }
   view.step_ms_median = figures_.step_ms_median();
   return view;
 }

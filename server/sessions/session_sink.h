@@ -45,6 +45,7 @@ struct SessionView {
   std::vector<simulation::ZoneReport> zones;
   std::vector<simulation::LigamentReport> ligaments;
   std::vector<std::string> remarks;
+  std::vector<simulation::LayerReport> layers;  ///< empty in a cached view of a live simulation
   int n_hexahedra = 0;
   int n_film_cells = 0;
   int n_dofs = 0;

@@ -90,6 +90,19 @@ void read_thickness(const v1::TissueLayer& message, const std::string& if_missin
   }
 }
 
+solid::TissueLaw read_law(v1::TissueLayer::Law law, const FieldReader& reader) {
+  switch (law) {
+    case v1::TissueLayer::LAW_UNSPECIFIED:
+    case v1::TissueLayer::COROTATIONAL:
+      return solid::TissueLaw::kCorotational;
+    case v1::TissueLayer::NEO_HOOKEAN:
+      return solid::TissueLaw::kNeoHookean;
+    default:
+      reader.wrong("law", absl::StrCat("is ", law, ", must be COROTATIONAL or NEO_HOOKEAN"));
+      return solid::TissueLaw::kCorotational;
+  }
+}
+
 /// A layer whose figures the preset has filled in, as far as it can.
 model::TissueLayerSpec read_layer(const v1::TissueLayer& message, const std::string& if_missing,
                                   const FieldReader& reader) {
@@ -110,6 +123,7 @@ model::TissueLayerSpec read_layer(const v1::TissueLayer& message, const std::str
   layer.material.poisson_ratio = figure(message.has_poisson_ratio(), message.poisson_ratio(), 1.0, "poisson_ratio");
   layer.material.density = figure(message.has_density_kg_m3(), message.density_kg_m3(), 1.0, "density_kg_m3");
   layer.material.prestress = message.prestress_kpa() * kPascalsPerKilopascal;
+  layer.material.law = read_law(message.law(), reader);
   return layer;
 }
 

@@ -156,6 +156,12 @@ v1::Summary to_summary(const SessionView& view) {
     ligament->set_points(static_cast<uint32_t>(report.points));
     ligament->set_broken_points(static_cast<uint32_t>(report.broken_points));
   }
+  for (const simulation::LayerReport& report : view.layers) {
+    v1::LayerSummary* layer = summary.add_layers();
+    layer->set_name(report.name);
+    layer->set_rest_volume_ml(report.rest_volume * kMillilitresPerCubicMetre);
+    layer->set_volume_ml(report.volume * kMillilitresPerCubicMetre);
+  }
   for (const simulation::ZoneReport& report : view.zones) {
     v1::ZoneSummary* zone = summary.add_zones();
     zone->set_name(report.name);

@@ -20,6 +20,10 @@ std::optional<anatomy::TissuePreset> preset_of(const v1::ModelSpec& spec) {
   }
 }
 
+v1::TissueLayer::Law law_of(anatomy::TissuePreset preset) {
+  return preset == anatomy::TissuePreset::kElastography ? v1::TissueLayer::NEO_HOOKEAN : v1::TissueLayer::COROTATIONAL;
+}
+
 void fill(const anatomy::TissueFigures& figures, v1::TissueLayer& layer) {
   if (!layer.has_thickness_mm() && !layer.has_down_to_bone()) {
     layer.mutable_thickness_mm()->set_constant(figures.thickness / kMetresPerMillimetre);
@@ -50,6 +54,7 @@ v1::ModelSpec fill_tissue_figures(v1::ModelSpec spec) {
   const auto preset = preset_of(spec);
   if (!preset) return spec;
   for (v1::TissueLayer& layer : *spec.mutable_layers()) {
+    if (layer.law() == v1::TissueLayer::LAW_UNSPECIFIED) layer.set_law(law_of(*preset));
     if (const auto kind = kind_of(layer)) fill(anatomy::figures_of(*preset, *kind), layer);
   }
   return spec;

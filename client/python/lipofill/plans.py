@@ -165,8 +165,12 @@ class Plan:
         density_kg_m3: Optional[float] = None,
         elements_through: Optional[int] = None,
         prestress_kpa: Optional[float] = None,
+        law: Optional[str] = None,
     ) -> Plan:
-        """A layer of tissue, from the skin inwards; figures left out come from ``model.tissue_preset``."""
+        """A layer of tissue, from the skin inwards; figures left out come from ``model.tissue_preset``.
+
+        ``law`` is ``"COROTATIONAL"``, the paper's, or ``"NEO_HOOKEAN"``, which keeps the tissue's volume at any strain.
+        """
         self.model.layers.add(
             name=name,
             thickness_mm=None if thickness_mm is None else _field(thickness_mm),
@@ -175,6 +179,7 @@ class Plan:
             density_kg_m3=density_kg_m3,
             elements_through=elements_through,
             prestress_kpa=prestress_kpa,
+            law=None if law is None else model_pb2.TissueLayer.Law.Value(law),
         )
         return self
 

@@ -149,6 +149,21 @@ TEST(CalculixDeck, ElementsHaveAPositiveJacobianInTheOrderWritten) {
   EXPECT_NEAR(volume, 48.0 * 48.0 * 10.0, 1e-6 * 48.0 * 48.0 * 10.0);
 }
 
+/// C10 = mu/2 and D1 = 2/kappa, in MPa.
+TEST(CalculixDeck, WritesTheLawOfEachLayer) {
+  model::FaceModelSpec spec = make_small_model_spec();
+  spec.layers[1].material.law = solid::TissueLaw::kNeoHookean;
+  const auto model = model::build_face_model(spec, nullptr);
+  ASSERT_TRUE(model.ok());
+  const Deck deck = write_deck(**model, make_small_plan(), constant_pressure(36, 500.0));
+  ASSERT_EQ(deck.all("*ELASTIC").size(), 1u);
+  EXPECT_DOUBLE_EQ(std::stod(deck.all("*ELASTIC")[0].lines[0].at(0)), 0.1);
+  const auto neo_hookean = deck.all("*HYPERELASTIC, NEO HOOKE");
+  ASSERT_EQ(neo_hookean.size(), 1u);
+  EXPECT_NEAR(std::stod(neo_hookean[0].lines[0].at(0)), 0.5 * 0.2 / (2.0 * 1.45), 1e-12);
+  EXPECT_NEAR(std::stod(neo_hookean[0].lines[0].at(1)), 2.0 * 3.0 * (1.0 - 0.9) / 0.2, 1e-12);
+}
+
 TEST(CalculixDeck, PressesBothWallsApart) {
   const auto model = make_small_model();
   plan::SimulationSpec plan = make_small_plan();

@@ -145,6 +145,16 @@ TEST(LayerThickness, PlainLayersAreLaidAsTheirFieldsSay) {
   EXPECT_EQ((*model)->geometry.grid.nodes, geometry->grid.nodes);
 }
 
+TEST(FaceModel, TheLawOfALayerIsPartOfTheContentHash) {
+  model::FaceModelSpec spec = make_small_model_spec();
+  const std::string without = (*model::build_face_model(spec, nullptr))->content_hash;
+  spec.layers[0].material.law = solid::TissueLaw::kNeoHookean;
+  const std::string outer = (*model::build_face_model(spec, nullptr))->content_hash;
+  EXPECT_NE(outer, without);
+  spec.layers[1].material.law = solid::TissueLaw::kNeoHookean;
+  EXPECT_NE((*model::build_face_model(spec, nullptr))->content_hash, outer);
+}
+
 TEST(FaceModel, PrestressIsBoundedAndPartOfTheContentHash) {
   model::FaceModelSpec spec = make_small_model_spec();
   const std::string without = (*model::build_face_model(spec, nullptr))->content_hash;

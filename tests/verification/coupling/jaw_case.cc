@@ -13,7 +13,11 @@
 namespace lipofill::verification {
 
 JawPlan load_jaw_plan() {
-  auto plan = client::load_plan(LIPOFILL_EXAMPLES "/plans/jaw_angle.json");
+  return load_sample_plan("jaw_angle.json");
+}
+
+JawPlan load_sample_plan(const std::string& file) {
+  auto plan = client::load_plan(LIPOFILL_EXAMPLES "/plans/" + file);
   EXPECT_TRUE(plan.ok()) << plan.status();
   if (!plan.ok()) return {};
   EXPECT_TRUE(client::load_plan_landmarks(&*plan).ok());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "core/model/face_model.h"
 #include "core/plan/simulation_spec.h"
@@ -16,6 +17,8 @@ struct JawPlan {
 
 /// From client/examples/plans/jaw_angle.json; not ok where that fails, and the test with it.
 JawPlan load_jaw_plan();
+/// The same of another sample plan on the same face.
+JawPlan load_sample_plan(const std::string& file);
 
 struct JawCase {
   std::shared_ptr<const model::FaceModel> model;

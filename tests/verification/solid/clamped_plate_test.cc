@@ -29,6 +29,7 @@ struct Plate {
   double nu = 0.45;
   double distortion = 0.0;
   bool stacked = false;
+  TissueLaw law = TissueLaw::kCorotational;
 };
 
 double bending_stiffness(const Plate& plate) {
@@ -52,7 +53,7 @@ Tissue make_square(const Plate& plate) {
     const bool rim = i == 0 || j == 0 || i == plate.n || j == plate.n;
     supports.fixed[a] = {rim, rim, rim};
   });
-  return Tissue::create(std::move(mesh), {{kYoungsModulus, plate.nu, kDensity}}, supports, {}).value();
+  return Tissue::create(std::move(mesh), {{kYoungsModulus, plate.nu, kDensity, 0.0, plate.law}}, supports, {}).value();
 }
 
 /// Displacements under pressure from below.
@@ -86,6 +87,7 @@ std::string describe(const Plate& plate) {
                      with_number(", t/b = 1/%g", std::round(plate.side / plate.thickness));
   if (plate.nu != 0.45) text += with_number(", nu %g", plate.nu);
   if (plate.distortion != 0.0) text += with_number(", distorted by %g %%", 100.0 * plate.distortion);
+  if (plate.law == TissueLaw::kNeoHookean) text += ", neo-Hookean";
   return text + (plate.stacked ? ", incompatible modes" : "");
 }
 
@@ -118,6 +120,16 @@ TEST(ClampedSquare, IncompatibleModesOnARegularMesh) {
   Case square = square_case();
   expect_deflection(square, {.n = 20, .stacked = true}, -0.0005, 0.0005);
   expect_deflection(square, {.n = 40, .stacked = true}, 0.0068, 0.0005);
+}
+
+/// The neo-Hookean solid-shell at small strain, its stabilisation in closed form.
+TEST(ClampedSquare, NeoHookeanNeitherLocksNorDrifts) {
+  Case square = square_case();
+  for (const double nu : {0.45, 0.4999}) {
+    expect_deflection(square, {.n = 20, .nu = nu, .law = TissueLaw::kNeoHookean}, 0.0, 0.012);
+    expect_deflection(square, {.n = 40, .nu = nu, .law = TissueLaw::kNeoHookean}, 0.0, 0.012);
+    expect_deflection(square, {.n = 40, .nu = nu, .distortion = 0.2, .law = TissueLaw::kNeoHookean}, 0.0, 0.012);
+  }
 }
 
 /// What is left of the error at fixed mesh is shear, of order (t/b)^2.

@@ -114,6 +114,58 @@ StaticState solve_static(Tissue& tissue, const Eigen::Matrix3Xd& force, int n_in
   return state;
 }
 
+StaticState solve_large_deformation(Tissue& tissue, const LargeDeformation& problem, int n_increments) {
+  constexpr int kMaxIterations = 200;
+  const Eigen::Matrix3Xd& rest = tissue.mesh().rest_positions;
+  std::vector<int> number;
+  int n_free = 0;
+  for (const std::array<bool, 3>& held : problem.held) {
+    for (const bool is_held : held) number.push_back(is_held ? -1 : n_free++);
+  }
+  const auto gather_free = [&](const double* values) {
+    Eigen::VectorXd free(n_free);
+    for (size_t i = 0; i < number.size(); ++i) {
+      if (number[i] >= 0) free[number[i]] = values[i];
+    }
+    return free;
+  };
+  const auto move = [&](const Eigen::VectorXd& by, double share, Eigen::Matrix3Xd x) {
+    for (size_t i = 0; i < number.size(); ++i) {
+      if (number[i] >= 0) x.data()[i] += share * by[number[i]];
+    }
+    return x;
+  };
+  StaticState state;
+  state.x = rest;
+  for (int increment = 1; increment <= n_increments; ++increment) {
+    const double share = static_cast<double>(increment) / n_increments;
+    for (size_t i = 0; i < number.size(); ++i) {
+      if (number[i] < 0) state.x.data()[i] = rest.data()[i] + share * (problem.prescribed.data()[i] - rest.data()[i]);
+    }
+    const auto potential = [&](const Eigen::Matrix3Xd& x) {
+      tissue.compute_force(x);
+      return tissue.elastic_energy() - share * problem.force.cwiseProduct(x - rest).sum();
+    };
+    state.converged = false;
+    for (int k = 0; k < kMaxIterations && !state.converged; ++k, ++state.iterations) {
+      tissue.assemble(state.x, kStatic);
+      const Eigen::VectorXd residual =
+          share * gather_free(problem.force.data()) - gather_free(tissue.internal_force().data());
+      state.converged = residual.norm() < 1e-9 * (tissue.internal_force().norm() + problem.force.norm());
+      if (state.converged) break;
+      const Solver solver(extract(tissue.system_matrix(), number, n_free));
+      const Eigen::VectorXd step = solver.solve(residual);
+      const double now = potential(state.x);
+      double length = 1.0;
+      while (length > 1e-6 && !(potential(move(step, length, state.x)) <= now + 1e-12 * std::abs(now))) length *= 0.5;
+      state.x = move(step, length, state.x);
+    }
+    if (!state.converged) break;
+  }
+  tissue.assemble(state.x, kStatic);
+  return state;
+}
+
 double compute_first_frequency(Tissue& tissue) {
   tissue.assemble(tissue.mesh().rest_positions, kStatic);
   const Solver solver(tissue.system_matrix());

@@ -1,6 +1,6 @@
 // Step 2: which part of the face, of what tissue, in how many elements.
 import { signal } from "@preact/signals";
-import { TissueLayer_Kind, TissueLayerSchema, TissuePreset } from "@wire/model_pb";
+import { TissueLayer_Kind, TissueLayer_Law, TissueLayerSchema, TissuePreset } from "@wire/model_pb";
 import { create } from "@bufbuild/protobuf";
 import { aroundOf, cornersOf, isCornered, landmarksOf, readable, regionLabels, type Side } from "../plan/anatomy";
 import { build } from "../plan/actions";
@@ -100,6 +100,12 @@ const kinds = [
   { value: TissueLayer_Kind.MUSCLE, label: "Muscle" },
 ];
 
+const laws = [
+  { value: TissueLayer_Law.LAW_UNSPECIFIED, label: "As the tissue figures say" },
+  { value: TissueLayer_Law.NEO_HOOKEAN, label: "Neo-Hookean (keeps its volume)" },
+  { value: TissueLayer_Law.COROTATIONAL, label: "Corotational (the paper's)" },
+];
+
 function Layers() {
   const layers = plan.value.model?.layers ?? [];
   return (
@@ -148,6 +154,13 @@ function Layers() {
             value={layer.youngsModulusKpa}
             field={`model.layers[${index}].youngs_modulus_kpa`}
             onChange={(value) => editPlan(({ model: spec }) => (spec!.layers[index].youngsModulusKpa = value))}
+          />
+          <SelectField
+            label="Law"
+            value={layer.law}
+            field={`model.layers[${index}].law`}
+            options={laws}
+            onChange={(value) => editPlan(({ model: spec }) => (spec!.layers[index].law = Number(value)))}
           />
           {layers.length > 1 && (
             <button

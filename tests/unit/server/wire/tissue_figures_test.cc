@@ -58,6 +58,30 @@ TEST(TissueFigures, WhatALayerSaysItselfStays) {
   EXPECT_FALSE(spec.layers(2).has_thickness_mm()) << "the bone says how thick it is";
 }
 
+TEST(TissueFigures, ElastographyIsNeoHookeanUnlessALayerSaysOtherwise) {
+  const auto laws = [](const std::string& rest) {
+    std::vector<solid::TissueLaw> found;
+    const auto spec = to_face_model_spec(square_with(rest));
+    EXPECT_TRUE(spec.ok()) << spec.status();
+    for (const model::TissueLayerSpec& layer : spec->layers) found.push_back(layer.material.law);
+    return found;
+  };
+  using enum solid::TissueLaw;
+  EXPECT_EQ(laws(R"(tissue_preset: ELASTOGRAPHY layers { name: "skin" } layers { name: "smas" law: COROTATIONAL })"),
+            (std::vector{kNeoHookean, kCorotational}));
+  EXPECT_EQ(laws(R"(tissue_preset: PAPER layers { name: "skin" } layers { name: "muscle" law: NEO_HOOKEAN })"),
+            (std::vector{kCorotational, kNeoHookean}));
+  EXPECT_EQ(laws(R"(layers { name: "skin" thickness_mm { constant: 2 } youngs_modulus_kpa: 90 poisson_ratio: 0.4
+                    density_kg_m3: 1100 })"),
+            std::vector{kCorotational});
+}
+
+TEST(TissueFigures, ALawThatIsNoneIsRefused) {
+  v1::ModelSpec spec = square_with(R"(tissue_preset: PAPER layers { name: "skin" })");
+  spec.mutable_layers(0)->set_law(static_cast<v1::TissueLayer::Law>(7));
+  EXPECT_THAT(fields_of(to_face_model_spec(spec).status()), UnorderedElementsAre("layers[0].law"));
+}
+
 TEST(TissueFigures, WithoutAPresetNothingIsFilled) {
   const v1::ModelSpec spec = square_with(R"(layers { name: "skin" })");
   EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(spec, fill_tissue_figures(spec)));

@@ -22,8 +22,9 @@ namespace {
 
 constexpr double kBorderClearance = 1.5e-3;  // [m]
 constexpr double kObstacleClearance = 2e-3;  // [m]
-constexpr double kDegreesOfTurn = 2.0;       // between the directions tried
-constexpr double kSharedShrink = 0.97;       // a rectangle whose grid leaves the skin is tried again so much smaller
+constexpr double kDegreesOfTurnBesideABorder = 5.0;
+constexpr double kDegreesOfTurn = 2.0;  // between the directions tried
+constexpr double kSharedShrink = 0.97;  // a rectangle whose grid leaves the skin is tried again so much smaller
 constexpr int kMostShrinks = 12;
 
 /// A rectangle of any direction: its frame, and its sides in it.
@@ -43,22 +44,30 @@ Rectangle box_around(const Eigen::Matrix2d& frame, const std::vector<Eigen::Vect
   return box;
 }
 
-/// The frame of the smallest rectangle, turned by right angles until eta runs up.
-Eigen::Matrix2d choose_frame(const FlatPatch& patch, double margin) {
+Eigen::Matrix2d frame_at(double degrees) {
+  return Eigen::Rotation2Dd(degrees * std::numbers::pi / 180.0).toRotationMatrix();
+}
+
+/// The frame of the smallest rectangle.
+Eigen::Matrix2d choose_smallest(const FlatPatch& patch, double margin) {
   double smallest = std::numeric_limits<double>::infinity();
   Eigen::Matrix2d best = Eigen::Matrix2d::Identity();
   for (double degrees = 0.0; degrees < 90.0; degrees += kDegreesOfTurn) {
-    const Eigen::Matrix2d frame = Eigen::Rotation2Dd(degrees * std::numbers::pi / 180.0).toRotationMatrix();
-    const Rectangle box = box_around(frame, patch.outline);
+    const Rectangle box = box_around(frame_at(degrees), patch.outline);
     const double area = (box.high - box.low + Eigen::Vector2d::Constant(2.0 * margin)).prod();
     if (area >= smallest * (1.0 - 1e-9)) continue;
     smallest = area;
-    best = frame;
+    best = frame_at(degrees);
   }
-  const Eigen::Matrix2d quarter = Eigen::Rotation2Dd(0.5 * std::numbers::pi).toRotationMatrix();
-  Eigen::Matrix2d upright = best;
-  for (int k = 0; k < 4; ++k, best = quarter * best) {
-    if (best.col(1).dot(patch.up) > upright.col(1).dot(patch.up)) upright = best;
+  return best;
+}
+
+/// The frame turned by right angles until eta runs up.
+Eigen::Matrix2d turn_upright(const FlatPatch& patch, Eigen::Matrix2d frame) {
+  const Eigen::Matrix2d quarter = frame_at(90.0);
+  Eigen::Matrix2d upright = frame;
+  for (int k = 0; k < 4; ++k, frame = quarter * frame) {
+    if (frame.col(1).dot(patch.up) > upright.col(1).dot(patch.up)) upright = frame;
   }
   return upright;
 }
@@ -74,11 +83,12 @@ struct ChosenRectangle {
   TurnedRectangle turned;
   Rectangle box;
   std::array<int, 4> obstacle_of_side{};
+  std::ptrdiff_t kept = 0;  ///< points of the footprints that lie in it
 };
 
-ChosenRectangle choose_rectangle(const FlatPatch& patch, double margin) {
+ChosenRectangle clear_in_frame(const FlatPatch& patch, double margin, const Eigen::Matrix2d& frame) {
   ChosenRectangle chosen;
-  chosen.turned.frame = choose_frame(patch, margin);
+  chosen.turned.frame = turn_upright(patch, frame);
   const Eigen::Matrix2d into = chosen.turned.frame.transpose();
   chosen.box = box_around(chosen.turned.frame, patch.outline);
   std::vector<ObstaclePoint> obstacles;
@@ -91,7 +101,20 @@ ChosenRectangle choose_rectangle(const FlatPatch& patch, double margin) {
   const ClearRectangle clear = find_clear_rectangle(chosen.box, margin, obstacles, content);
   chosen.turned.sides = clear.rectangle;
   chosen.obstacle_of_side = clear.obstacle_of_side;
+  chosen.kept = std::count_if(content.begin(), content.end(),
+                              [&](const Eigen::Vector2d& p) { return clear.rectangle.contains(p); });
   return chosen;
+}
+
+/// The smallest rectangle; where a border cuts it, the one of all directions that keeps most of the footprints.
+ChosenRectangle choose_rectangle(const FlatPatch& patch, double margin) {
+  ChosenRectangle best = clear_in_frame(patch, margin, choose_smallest(patch, margin));
+  if (best.kept == std::ssize(patch.content)) return best;
+  for (double degrees = 0.0; degrees < 90.0; degrees += kDegreesOfTurnBesideABorder) {
+    ChosenRectangle other = clear_in_frame(patch, margin, frame_at(degrees));
+    if (other.kept > best.kept) best = std::move(other);
+  }
+  return best;
 }
 
 /// The share of each footprint in the rectangle, and the obstacle nearest to what is lost.

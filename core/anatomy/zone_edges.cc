@@ -33,7 +33,8 @@ ZoneEdge edge_of_region(std::string_view name) {
       if (parts->first == row.region) found = row;
     }
   }
-  return {found.stiffness_kpa_per_mm * kPascalsPerMetrePerKilopascalPerMillimetre, found.width_mm * kMetresPerMillimetre};
+  return {found.stiffness_kpa_per_mm * kPascalsPerMetrePerKilopascalPerMillimetre,
+          found.width_mm * kMetresPerMillimetre};
 }
 
 }  // namespace lipofill::anatomy

@@ -134,7 +134,7 @@ class Builder {
   const film::FilmGrid& film_;
   GapGeometry result_;
   int n_pieces_ = 0;
-  int cell_ = -1;  ///< the cell under way
+  int cell_ = -1;                                     ///< the cell under way
   std::vector<Place> places_;                         ///< those of the walls, cell by cell
   std::unordered_map<int, int> wall_place_of_place_;  ///< of the cell under way
 };

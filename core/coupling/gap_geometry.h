@@ -25,8 +25,8 @@ struct WallNodes {
 struct GapGeometry {
   /// kLanes pieces side by side; a lane that is left over has no cell.
   struct Batch {
-    Lanes s[2], t[2];  ///< Gauss points in the quadrilateral
-    Lanes weight[4];     ///< s fastest
+    Lanes s[2], t[2];                        ///< Gauss points in the quadrilateral
+    Lanes weight[4];                         ///< s fastest
     int outer[4][kLanes], inner[4][kLanes];  ///< nodes of the quadrilateral
     int wall_place[4][kLanes];               ///< in `wall_places`, by corner
     int cell[kLanes];                        ///< -1: none

@@ -44,8 +44,7 @@ void add_gradients(const GapGradient<Lanes>& gradient, const GapGeometry::Batch&
 GapVolume::GapVolume(const geometry::LayeredGrid& tissue, const WallNodes& walls, const film::FilmGrid& film,
                      const std::vector<int>& dof_of_component, int n_dofs)
     : GapVolume(std::make_shared<const GapGeometry>(make_gap_geometry(
-          tissue, walls, film, film::cut_cells(film, tissue.n_xi, tissue.n_eta), dof_of_component, n_dofs))) {
-}
+          tissue, walls, film, film::cut_cells(film, tissue.n_xi, tissue.n_eta), dof_of_component, n_dofs))) {}
 
 GapVolume::GapVolume(std::shared_ptr<const GapGeometry> geometry)
     : geometry_(std::move(geometry)),

@@ -12,8 +12,8 @@ std::vector<WallPressure> spread_over_wall(const geometry::LayeredGrid& tissue,
   for (const film::CellPiece& piece : pieces) {
     const int quad = piece.quad_j * tissue.n_xi + piece.quad_i;
     const double inside = 0.25 * std::accumulate(piece.share.begin(), piece.share.end(), 0.0);
-    const double of_quad = (piece.box.xi_max - piece.box.xi_min) * tissue.n_xi *
-                           (piece.box.eta_max - piece.box.eta_min) * tissue.n_eta;
+    const double of_quad =
+        (piece.box.xi_max - piece.box.xi_min) * tissue.n_xi * (piece.box.eta_max - piece.box.eta_min) * tissue.n_eta;
     sum[quad] += inside * of_quad * pressure[piece.cell];
     covered[quad] = true;
   }

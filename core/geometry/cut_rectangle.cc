@@ -93,7 +93,9 @@ std::array<double, 4> fit_gauss_shares(const RectangleMoments& moments) {
   const double low = 0.5 - 0.5 / std::sqrt(3.0);
   const double high = 1.0 - low;
   /// The integral of (a - s) (b - t), which is zero at two of the points' columns and rows.
-  const auto product = [&](double a, double b) { return a * b * moments.one - b * moments.s - a * moments.t + moments.st; };
+  const auto product = [&](double a, double b) {
+    return a * b * moments.one - b * moments.s - a * moments.t + moments.st;
+  };
   const double scale = 4.0 / ((high - low) * (high - low));
   return {scale * product(high, high), -scale * product(low, high), -scale * product(high, low),
           scale * product(low, low)};

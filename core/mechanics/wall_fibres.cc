@@ -169,11 +169,8 @@ void add_fibres_of_nodes(const model::FaceModel& model, const FilmOnTissue& film
     const int inner = film.nodes->inner[place];
     const double of_node = stiffness * area[place] + film.film->bond.stiffness[place];
     if (!open[place] || outer == inner || of_node <= 0.0) continue;
-    fibres.springs.push_back({{outer, outer, outer, outer},
-                              {inner, inner, inner, inner},
-                              {1.0, 0.0, 0.0, 0.0},
-                              of_node,
-                              0.0});
+    fibres.springs.push_back(
+        {{outer, outer, outer, outer}, {inner, inner, inner, inner}, {1.0, 0.0, 0.0, 0.0}, of_node, 0.0});
   }
 }
 

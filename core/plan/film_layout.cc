@@ -169,8 +169,7 @@ absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmS
     layout.pieces = film::cut_cells(layout.grid, tissue.n_xi, tissue.n_eta);
     if (spec.edge.outline == ZoneOutline::kCurve) layout.pieces = cut_at_outlines(layout.pieces, layout.grid, zones);
     remark_on_attachments(model, spec, layout.remarks);
-    layout.bond =
-        bond_around_zones(model, spec, layout.level, layout.grid, layout.pieces, layout.walled_slots, zones);
+    layout.bond = bond_around_zones(model, spec, layout.level, layout.grid, layout.pieces, layout.walled_slots, zones);
   }
   for (size_t z = 0; z < spec.zones.size(); ++z) {
     layout.outlines.push_back(spec.edge.outline == ZoneOutline::kCurve

@@ -28,9 +28,9 @@ struct FilmLayout {
   film::WalledSlots walled_slots;  ///< on both sides of walls inside zones
   ConnectiveTissueSpec connective_tissue;
   std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< of each zone, on the chart
-  std::vector<film::CellPiece> pieces;  ///< on the quadrilaterals of the tissue, kTissue only
-  ZoneBond bond;                        ///< of the two walls, kTissue only
-  std::vector<std::string> remarks;  ///< zones that lie on the film in part, a sentence each
+  std::vector<film::CellPiece> pieces;                       ///< on the quadrilaterals of the tissue, kTissue only
+  ZoneBond bond;                                             ///< of the two walls, kTissue only
+  std::vector<std::string> remarks;                          ///< zones that lie on the film in part, a sentence each
 
   int cell_at(const geometry::ChartPoint& place) const;
   geometry::ChartPoint cell_centre(int cell) const;

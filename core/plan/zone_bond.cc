@@ -58,8 +58,8 @@ QuadCover cover_quads(const LayeredGrid& level, const film::FilmGrid& grid,
 
 /// The zone that has the most of a quadrilateral, -1: none.
 int main_zone(const std::map<int, double>& zones) {
-  const auto most = std::max_element(zones.begin(), zones.end(),
-                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto most =
+      std::max_element(zones.begin(), zones.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == zones.end() ? -1 : most->first;
 }
 
@@ -80,7 +80,8 @@ class AttachmentField {
 
   /// Stiffness per area [Pa/m]; infinite where the layers are bonded.
   double at(const ChartPoint& place) const {
-    const auto inside = std::find_if(levels_.begin(), levels_.end(), [&](const auto& level) { return level(place) >= 0.0; });
+    const auto inside =
+        std::find_if(levels_.begin(), levels_.end(), [&](const auto& level) { return level(place) >= 0.0; });
     const Eigen::Vector3d point = geometry::skin_position(grid_, place);
     if (inside == levels_.end()) return outside_zones(point);
     return of_septa(point, static_cast<size_t>(inside - levels_.begin()));
@@ -238,7 +239,8 @@ class BondBuilder {
   /// E/L [Pa/m], L the side of a quadrilateral of this area.
   double rigid_stiffness(double area) const {
     double modulus = 0.0;
-    for (const model::TissueLayerSpec& layer : model_.layers) modulus = std::max(modulus, layer.material.youngs_modulus);
+    for (const model::TissueLayerSpec& layer : model_.layers)
+      modulus = std::max(modulus, layer.material.youngs_modulus);
     return modulus / std::sqrt(area);
   }
 

@@ -21,8 +21,8 @@ double squared_distance(const Eigen::Vector3d& point, const std::array<Eigen::Ve
 ZoneDistance::ZoneDistance(const geometry::LayeredGrid& grid, const std::vector<geometry::OutlineLoop>& outline) {
   for (const geometry::OutlineLoop& loop : outline) {
     for (size_t k = 0; k < loop.size(); ++k) {
-      segments_.push_back({geometry::skin_position(grid, loop[k]),
-                           geometry::skin_position(grid, loop[(k + 1) % loop.size()])});
+      segments_.push_back(
+          {geometry::skin_position(grid, loop[k]), geometry::skin_position(grid, loop[(k + 1) % loop.size()])});
     }
   }
   for (const auto& segment : segments_) centre_ += segment[0] / static_cast<double>(segments_.size());

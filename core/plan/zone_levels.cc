@@ -47,9 +47,8 @@ absl::StatusOr<Levels> levels_of(const geometry::FaceGeometry& face, const Named
     violations.absorb("region", placed.status());
     return violations.to_status();
   }
-  return Levels{[&face, placed = *placed](const ChartPoint& p) {
-    return placed.level(geometry::skin_position(face.grid, p));
-  }};
+  return Levels{
+      [&face, placed = *placed](const ChartPoint& p) { return placed.level(geometry::skin_position(face.grid, p)); }};
 }
 
 }  // namespace

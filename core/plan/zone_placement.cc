@@ -27,7 +27,9 @@ double share_of(const SlotCover& cover) {
 
 /// The extent of slots [i0, i1] x [j0, j1], where whole numbers are the grid's lines.
 ChartBox box_of(const FilmSpec& spec, double i0, double i1, double j0, double j1) {
-  const auto xi = [&](double i) { return spec.extent.xi_min + (spec.extent.xi_max - spec.extent.xi_min) * i / spec.n_xi; };
+  const auto xi = [&](double i) {
+    return spec.extent.xi_min + (spec.extent.xi_max - spec.extent.xi_min) * i / spec.n_xi;
+  };
   const auto eta = [&](double j) {
     return spec.extent.eta_min + (spec.extent.eta_max - spec.extent.eta_min) * j / spec.n_eta;
   };
@@ -195,8 +197,8 @@ PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, Fie
   for (size_t z = 0; z < shapes.size(); ++z) {
     placed.cutting.push_back(levels_of_own_part(shapes, z));
     placed.levels.push_back(least_of(spec, placed.cutting.back()));
-    placed.outlines.push_back(geometry::trace_outline(placed.levels.back(), 2 * model.geometry.grid.n_xi,
-                                                      2 * model.geometry.grid.n_eta));
+    placed.outlines.push_back(
+        geometry::trace_outline(placed.levels.back(), 2 * model.geometry.grid.n_xi, 2 * model.geometry.grid.n_eta));
   }
   if (spec.edge.outline == ZoneOutline::kCells) {
     take_whole_slots(spec, shapes, placed);
@@ -210,9 +212,10 @@ PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, Fie
     if (std::find(placed.zone_of_slot.begin(), placed.zone_of_slot.end(), static_cast<int>(z)) !=
         placed.zone_of_slot.end())
       continue;
-    violations.add(absl::StrCat("zones[", z, "]"),
-                   absl::StrCat("'", spec.zones[z].name,
-                                "' claims no film cell: it lies outside the film's extent, or other zones hold its cells"));
+    violations.add(
+        absl::StrCat("zones[", z, "]"),
+        absl::StrCat("'", spec.zones[z].name,
+                     "' claims no film cell: it lies outside the film's extent, or other zones hold its cells"));
   }
   return placed;
 }

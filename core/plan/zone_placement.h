@@ -14,14 +14,14 @@ namespace lipofill::plan {
 
 /// What the zones of a film cover of its slots.
 struct PlacedZones {
-  std::vector<int> zone_of_slot;            ///< whose cell a slot is, -1: of no zone
-  std::vector<film::SlotCover> cover;       ///< of each slot by its own zone
+  std::vector<int> zone_of_slot;       ///< whose cell a slot is, -1: of no zone
+  std::vector<film::SlotCover> cover;  ///< of each slot by its own zone
   std::vector<film::SlotFragment> fragments;
-  std::vector<geometry::Level> levels;      ///< of each zone: positive where the fat is its own
+  std::vector<geometry::Level> levels;  ///< of each zone: positive where the fat is its own
   /// The same as several levels of which all are positive there, without the corners that one of their minimum has.
   std::vector<std::vector<geometry::Level>> cutting;
   std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< of each zone, twice as fine as the grid of the tissue
-  double uncounted = 0.0;  ///< slots' worth of zones that no cell could take
+  double uncounted = 0.0;                                    ///< slots' worth of zones that no cell could take
 };
 
 /// Finds the cells of each zone. Where zones overlap the earlier one has the place. With ZoneOutline::kCurve the

@@ -53,9 +53,7 @@ TEST(TraceOutline, ACircleIsOneLoopWhoseLengthAndAreaConverge) {
 }
 
 TEST(TraceOutline, AHoleGoesClockwise) {
-  const Level ring = [](const ChartPoint& p) {
-    return 0.1 - std::abs(std::hypot(p.xi - 0.5, p.eta - 0.5) - 0.3);
-  };
+  const Level ring = [](const ChartPoint& p) { return 0.1 - std::abs(std::hypot(p.xi - 0.5, p.eta - 0.5) - 0.3); };
   const auto loops = trace_outline(ring, 40, 40);
   ASSERT_EQ(loops.size(), 2u);
   EXPECT_NEAR(area_of(loops[0]) + area_of(loops[1]), std::numbers::pi * (0.16 - 0.04), 2e-3);

@@ -63,9 +63,10 @@ AtRest inflate(int n, double half, double volume, const plan::ZoneEdgeSpec& edge
 }
 
 Case edge_case() {
-  return Case({"coupled/10-zone-edge", "The edge of a zone under a thin plate",
-               "Rigid: a clamped strip, p = 720 D V/L^5, wherever the edge lies on the grid. Attached: the beam equation "
-               "D w'''' - (k t^2/4 w')' + k w = p with k(x) growing along the edge, by finite differences."});
+  return Case(
+      {"coupled/10-zone-edge", "The edge of a zone under a thin plate",
+       "Rigid: a clamped strip, p = 720 D V/L^5, wherever the edge lies on the grid. Attached: the beam equation "
+       "D w'''' - (k t^2/4 w')' + k w = p with k(x) growing along the edge, by finite differences."});
 }
 
 TEST(ZoneEdge, ARigidEdgeBetweenGridLinesIsAsGoodAsOneOnThem) {
@@ -83,7 +84,8 @@ TEST(ZoneEdge, ARigidEdgeBetweenGridLinesIsAsGoodAsOneOnThem) {
     if (k > 0) worst_step = std::max(worst_step, std::abs(ratio - last));
     last = ratio;
   }
-  edge.record({"largest error of p over ten places between two lines, 64 elements", "1", 0.1, worst, 0.0, Bound::kAtMost});
+  edge.record(
+      {"largest error of p over ten places between two lines, 64 elements", "1", 0.1, worst, 0.0, Bound::kAtMost});
   edge.record({"largest change of that for a tenth of an element", "1", 0.03, worst_step, 0.0, Bound::kAtMost});
 }
 
@@ -96,9 +98,7 @@ struct Beam {
     const int n = 4000;
     const double end = half + attachment.width;
     const double dx = end / n;
-    const auto k = [&](double x) {
-      return x <= half ? 0.0 : attachment.stiffness * (x - half) / attachment.width;
-    };
+    const auto k = [&](double x) { return x <= half ? 0.0 : attachment.stiffness * (x - half) / attachment.width; };
     // Unknowns are w at i dx, i = 0 .. n - 1; ghosts mirror at 0, and w_n = 0, w_{n+1} = w_{n-1}.
     std::vector<Eigen::Triplet<double>> entries;
     const auto add = [&](int row, int i, double value) {
@@ -146,7 +146,8 @@ TEST(ZoneEdge, AnAttachmentGivesAsTheBeamOnItsFoundationDoes) {
   edge.record({"p over the beam's, 128 elements", "1", 1.0, fine.pressure / pressure, 0.01});
   edge.record({"lift over the beam's, 128 elements", "1", 1.0, fine.lift / kLift, 0.01});
   const Beam clamped(half, {1e12, 6e-3});
-  edge.record({"lift of the same pressure over that with a rigid edge", "1", 1.2, beam.lift / clamped.lift, 0.0, Bound::kAtLeast});
+  edge.record({"lift of the same pressure over that with a rigid edge", "1", 1.2, beam.lift / clamped.lift, 0.0,
+               Bound::kAtLeast});
   edge.record_series({"p with an attachment", "elements along the strip", sizes, errors, 2.0, 1.5});
 }
 

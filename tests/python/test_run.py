@@ -79,7 +79,9 @@ def test_the_meshes_of_a_model_can_be_fetched(jaw, connection):
 def test_the_surface_of_a_scan_can_be_fetched(jaw, connection):
     (scan,) = connection.scans.list(jaw[0].patient)
     meshes = connection.scans.download_mesh(scan.name)
-    assert meshes["scan.points"].shape == (scan.report.vertices, 3) and len(meshes["scan.cells"]) == scan.report.triangles
+    assert (
+        meshes["scan.points"].shape == (scan.report.vertices, 3) and len(meshes["scan.cells"]) == scan.report.triangles
+    )
 
 
 def test_the_tissue_can_be_exported(jaw):

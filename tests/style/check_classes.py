@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
 """Checks that classes stay small: in core and server at most 25 private methods and 15 members.
 
-A class that grows past that is several classes (CONTRIBUTING.md). Those that are larger today are listed with what they
-have, which may only shrink. Exit code 1 and a line a breach.
+    tests/style/check_classes.py ROOT
+
+A class that grows past that is several classes (CONTRIBUTING.md). Those that are larger today are
+listed with what they have, which may only shrink. It prints file:line for every larger class.
 """
 
-import pathlib
 import re
-import sys
+
+from style import check
 
 MOST_METHODS = 25
 MOST_MEMBERS = 15
-#: Classes that are still too large: private methods and members. Take one out when it has been divided.
+#: Classes that are still too large: private methods and members. One that has been divided leaves.
 LARGER = {
     "ImplicitViscosity": (4, 17),
     "Metrics": (0, 25),
@@ -31,12 +33,14 @@ def body_after(text, opening):
     for at in range(opening, len(text)):
         depth += {"{": 1, "}": -1}.get(text[at], 0)
         if depth == 0:
-            return text[opening + 1:at]
-    return text[opening + 1:]
+            return text[opening + 1 : at]
+    return text[opening + 1 :]
 
 
 def statements(body):
-    """Declarations of a class body, each without what stands in its braces; access labels as they are."""
+    """Declarations of a class body, each without what stands in its braces; access labels as they
+    are.
+    """
     statement, depth = "", 0
     for character in body:
         if character == "{":
@@ -47,7 +51,9 @@ def statements(body):
                 statement += "{}"
         elif depth == 0:
             statement += character
-        ends = depth == 0 and (character == ";" or (character == "}" and re.search(r"\)[\w\s]*(:.*)?\{\}$", statement, re.S)))
+        ends = depth == 0 and (
+            character == ";" or (character == "}" and re.search(r"\)[\w\s]*(:.*)?\{\}$", statement, re.S))
+        )
         label = re.fullmatch(r"\s*(public|private|protected):", statement)
         if ends or label:
             yield " ".join(statement.split())
@@ -79,27 +85,27 @@ def classes(text):
                 members += statement.count("_,") + 1
             elif access == "private" and is_method(statement):
                 methods += 1
-        yield match.group(1), methods, members, text[:match.start()].count("\n") + 1
+        yield match.group(1), methods, members, text[: match.start()].count("\n") + 1
 
 
-def main():
-    root = pathlib.Path(sys.argv[1]).resolve()
-    found, seen = [], set()
+def breaches(root):
+    seen = set()
     for source in sorted(root.glob("core/**/*.h")) + sorted(root.glob("server/**/*.h")):
         path = source.relative_to(root).as_posix()
         for name, methods, members, line in classes(source.read_text()):
             most_methods, most_members = LARGER.get(name, (MOST_METHODS, MOST_MEMBERS))
             if methods > most_methods or members > most_members:
-                found.append(f"{path}:{line}: {name} has {methods} private methods and {members} members; "
-                             f"it may have {most_methods} and {most_members}")
+                yield (
+                    f"{path}:{line}: {name} has {methods} private methods and {members} members; "
+                    f"it may have {most_methods} and {most_members}"
+                )
             if name in LARGER:
                 seen.add(name)
                 if methods <= MOST_METHODS and members <= MOST_MEMBERS:
-                    found.append(f"{path}:{line}: {name} is small enough now: take it out of LARGER in check_classes.py")
-    found += [f"tests/style/check_classes.py: there is no class {name}: take it out of LARGER" for name in LARGER.keys() - seen]
-    print("\n".join(found) or "every class is small enough, or no larger than it was")
-    return 1 if found else 0
+                    yield f"{path}:{line}: {name} is small enough now: take it out of LARGER in check_classes.py"
+    for name in sorted(LARGER.keys() - seen):
+        yield f"tests/style/check_classes.py: there is no class {name}: take it out of LARGER"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    check(breaches, "every class is small enough, or no larger than it was")

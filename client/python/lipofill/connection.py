@@ -58,11 +58,13 @@ class Connection:
     Parameters
     ----------
     server : str, optional
-        ``"host:port"`` or ``"unix:/path"``; default: the environment's LIPOFILL_SERVER, else 127.0.0.1:50061.
+        ``"host:port"`` or ``"unix:/path"``; default: the environment's LIPOFILL_SERVER, else
+        127.0.0.1:50061.
     credentials : Credentials, optional
         Default: from the environment, see Credentials.from_environment.
     retry : RetryPolicy, optional
-        How long calls are made again where that is safe: reads, deletions, and creates and commands, which bear a request_id.
+        How long calls are made again where that is safe: reads, deletions, and creates and
+        commands, which bear a request_id.
     timeout_s : float
         Of one attempt at a call.
 
@@ -122,7 +124,8 @@ class Connection:
         keep: bool = False,
         progress: Optional[ProgressCallback] = None,
     ) -> Run:
-        """Brings a plan to the daemon: uploads its scans, builds its model, creates its simulation. Entering the run starts it.
+        """Brings a plan to the daemon: uploads its scans, builds its model, creates its simulation.
+        Entering the run starts it.
 
         Parameters
         ----------
@@ -136,7 +139,9 @@ class Connection:
         """
         return Run.prepare(self, plan, patient, keep, progress)
 
-    def call(self, method: UnaryUnary[Request, Response], request: Request, *, timeout_s: Optional[float] = None) -> Response:
+    def call(
+        self, method: UnaryUnary[Request, Response], request: Request, *, timeout_s: Optional[float] = None
+    ) -> Response:
         """One request, one response; made again while the daemon is away, where that is safe.
 
             connection.call(connection.simulation_stub.GetSeries, GetSeriesRequest(name=name))
@@ -157,7 +162,9 @@ class Connection:
                 raise error from None
 
     def delete(self, method: UnaryUnary[Request, Response], request: Request) -> None:
-        """As ``call``; an attempt that was not answered may have deleted it, and then there is nothing left to find."""
+        """As ``call``; an attempt that was not answered may have deleted it, and then there is
+        nothing left to find.
+        """
         attempts = Attempts(self.retry, True)
         while True:
             try:
@@ -171,7 +178,9 @@ class Connection:
                 raise error from None
 
     def stream_items(self, stream: ResponseStream[Response]) -> Iterator[Response]:
-        """The responses of a stream, its error as a LipofillError. Leaving the iteration ends the stream."""
+        """The responses of a stream, its error as a LipofillError. Leaving the iteration ends the
+        stream.
+        """
         try:
             yield from stream
         except grpc.RpcError as problem:

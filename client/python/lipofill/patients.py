@@ -49,8 +49,12 @@ class Patients:
             Someone changed the patient since `patient.etag` was read.
         """
         mask = FieldMask(paths=fields) if fields else None
-        return self._connection.call(self._stub.UpdatePatient, pb.UpdatePatientRequest(patient=patient, update_mask=mask))
+        return self._connection.call(
+            self._stub.UpdatePatient, pb.UpdatePatientRequest(patient=patient, update_mask=mask)
+        )
 
     def delete(self, name: str, *, force: bool = False) -> None:
-        """With `force` its scans and models go with it; without, FailedPreconditionError while it has some."""
+        """With `force` its scans and models go with it; without, FailedPreconditionError while it
+        has some.
+        """
         self._connection.delete(self._stub.DeletePatient, pb.DeletePatientRequest(name=name, force=force))

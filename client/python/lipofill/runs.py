@@ -28,7 +28,8 @@ class Run(Simulation):
         with connection.run(plan, progress=lipofill.print_progress) as run:
             result = run.wait()
 
-    Entering starts it, leaving stops it unless it has ended, and deletes what was made for it unless `keep`.
+    Entering starts it, leaving stops it unless it has ended, and deletes what was made for it
+    unless `keep`.
 
     Attributes
     ----------
@@ -38,7 +39,14 @@ class Run(Simulation):
     """
 
     def __init__(
-        self, connection: Connection, name: str, plan: Plan, patient: str, model: model_pb2.Model, keep: bool, made_patient: bool
+        self,
+        connection: Connection,
+        name: str,
+        plan: Plan,
+        patient: str,
+        model: model_pb2.Model,
+        keep: bool,
+        made_patient: bool,
     ) -> None:
         super().__init__(connection, name)
         self.plan = plan
@@ -77,7 +85,9 @@ class Run(Simulation):
             self.discard()
 
     def discard(self) -> None:
-        """Deletes the simulation, its model and, where it was made for the run and the caller may, the patient with the scans."""
+        """Deletes the simulation, its model and, where it was made for the run and the caller may,
+        the patient with the scans.
+        """
         with suppress(NotFoundError):
             self.delete()
         with suppress(NotFoundError):

@@ -37,7 +37,8 @@ struct RunOptions {
   bool quiet = false;
 };
 
-/// A plan carried out on a daemon from scan to result: each member function is one step, in their order in `carry_out`.
+/// A plan carried out on a daemon from scan to result: each member function is one step, in their
+/// order in `carry_out`.
 class Run {
  public:
   Run(Application& application, RunOptions options);

@@ -224,7 +224,8 @@ std::string series_csv(const v1::SimulationSpec& spec, const std::vector<v1::Ser
                          row.skin_max_displacement_mm(), row.skin_speed_mm_per_s()}) {
       absl::StrAppend(&csv, ",", number(value));
     }
-    // A row without the probe leaves its columns empty, so that the columns after it keep their place.
+    // A row without the probe leaves its columns empty, so that the columns after it keep their
+    // place.
     for (int i = 0; i < spec.probes_size(); ++i) {
       absl::StrAppend(&csv, ",", i < row.probe_thickness_mm_size() ? number(row.probe_thickness_mm(i)) : "");
       absl::StrAppend(&csv, ",", i < row.probe_pressure_pa_size() ? number(row.probe_pressure_pa(i)) : "");

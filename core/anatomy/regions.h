@@ -21,8 +21,8 @@ struct Region {
 /// Names that find_region knows, without their side: "masseter", ...
 std::vector<std::string> region_names();
 
-/// A region by name and side, for example "masseter_left". Sizes are those of an adult (assumed). INVALID_ARGUMENT
-/// listing the known names.
+/// A region by name and side, for example "masseter_left". Sizes are those of an adult (assumed).
+/// INVALID_ARGUMENT listing the known names.
 absl::StatusOr<Region> find_region(std::string_view name);
 
 /// A region brought to a face: centre and axes in the scan's frame.
@@ -32,13 +32,13 @@ struct PlacedRegion {
   double half_length = 0.0;  ///< [m]
   double half_width = 0.0;   ///< [m]
   bool contains(const Eigen::Vector3d& point) const;
-  /// Distance from the centre in units of the half-axes, along a surface with this normal at the point: 1 on the rim of
-  /// the ellipse. The centre may lie above or below the surface.
+  /// Distance from the centre in units of the half-axes, along a surface with this normal at the
+  /// point: 1 on the rim of the ellipse. The centre may lie above or below the surface.
   double compute_radius(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const;
 };
 
-/// A region where the landmarks put it, on the charted region or not; its centre lies near the skin, not on it.
-/// INVALID_ARGUMENT with the field violation "" when a landmark is missing.
+/// A region where the landmarks put it, on the charted region or not; its centre lies near the
+/// skin, not on it. INVALID_ARGUMENT with the field violation "" when a landmark is missing.
 absl::StatusOr<PlacedRegion> place_region_by_landmarks(const geometry::FaceGeometry& face, std::string_view name);
 
 /// Places a region. INVALID_ARGUMENT when a landmark is missing or the centre lies outside the

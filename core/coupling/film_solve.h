@@ -26,14 +26,16 @@ struct FilmTolerance {
   double mismatch = 1e-11;  ///< of gap and volume in a cell
 };
 
-/// Solves the film's step with the mobility at the new thickness: Picard iteration on the thickness, and in each of its
-/// iterations the paper's eq. 9 (or 11) as the minimum of a convex function of the pressure,
+/// Solves the film's step with the mobility at the new thickness: Picard iteration on the
+/// thickness, and in each of its iterations the paper's eq. 9 (or 11) as the minimum of a convex
+/// function of the pressure,
 ///
 ///     g0 + C p - V'(p) = void >= 0,   p >= lowest,   void (p - lowest) = 0
 ///
-/// with g0 the gap at zero pressure and V' the film's volume by its fluxes (film_projection.h), by Newton's method with
-/// a line search; cells at the suction limit are held (a primal-dual active set). Linear films without a limit need one
-/// solve. Stable and positive at any step once converged.
+/// with g0 the gap at zero pressure and V' the film's volume by its fluxes (film_projection.h), by
+/// Newton's method with a line search; cells at the suction limit are held (a primal-dual active
+/// set). Linear films without a limit need one solve. Stable and positive at any step once
+/// converged.
 /// Checked by tests/unit/coupling/film_solve_test.cc and tests/verification/film/.
 class FilmSolver {
  public:
@@ -42,13 +44,14 @@ class FilmSolver {
   PressureSolver& pressure_solver() { return solver_; }
   const PressureSolver& pressure_solver() const { return solver_; }
 
-  /// @param lowest    the suction limit of each cell [Pa] (n), minus infinity: none; empty: none anywhere
+  /// @param lowest    the suction limit of each cell [Pa] (n), minus infinity: none; empty: none
+  ///                  anywhere
   /// @param solution  pressure, volume and flux to start from; becomes the solution
   void solve(const Eigen::VectorXd& gap_without_pressure, const Eigen::VectorXd& lowest, FilmTolerance tolerance,
              FilmSolution& solution);
 
-  /// Takes the mobility that solves of many cells are preconditioned with from the volumes and fluxes of a state, as
-  /// the values of dt J of each film.
+  /// Takes the mobility that solves of many cells are preconditioned with from the volumes and
+  /// fluxes of a state, as the values of dt J of each film.
   void measure_mobility(const FilmSolution& at, std::vector<Eigen::VectorXd>& mobility);
 
  private:

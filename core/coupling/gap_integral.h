@@ -4,8 +4,8 @@
 
 namespace lipofill::coupling {
 
-/// A piece of the gap between two bilinear walls, T = double, or Lanes of them. Corners as those of the quadrilateral
-/// it lies in: (s, t) = (0, 0), (1, 0), (1, 1), (0, 1).
+/// A piece of the gap between two bilinear walls, T = double, or Lanes of them. Corners as those of
+/// the quadrilateral it lies in: (s, t) = (0, 0), (1, 0), (1, 1), (0, 1).
 template <typename T>
 struct GapPiece {
   Vector3<T> middle[4];    ///< half-way between the walls [m]
@@ -25,8 +25,8 @@ struct GapGradient {
 ///
 ///     V = int det(dX/ds, dX/dt, d) ds dt du = int [a x b + (a' x b')/12] . d ds dt,     X = middle + u d, |u| < 1/2
 ///
-/// a, b the tangents of the middle along s and t, a', b' those of d: exact by 2 x 2 points. Where both walls touch,
-/// d = 0, volume and by_middle are exactly 0.
+/// a, b the tangents of the middle along s and t, a', b' those of d: exact by 2 x 2 points. Where
+/// both walls touch, d = 0, volume and by_middle are exactly 0.
 template <bool kWithGradient, typename T>
 LIPOFILL_INLINE T integrate_piece(const GapPiece<T>& piece, GapGradient<T>* gradient) {
   using Vector = Vector3<T>;

@@ -9,12 +9,12 @@
 
 namespace lipofill::coupling {
 
-/// L11, L21 and C of FactorAnalysis in float32 or float64: left-looking, supernode by supernode, on BLAS. The matrix is
-/// scaled to a unit diagonal, so that units and contrasts of stiffness cost no digits. C is a sum of squares, without
-/// cancellation.
+/// L11, L21 and C of FactorAnalysis in float32 or float64: left-looking, supernode by supernode, on
+/// BLAS. The matrix is scaled to a unit diagonal, so that units and contrasts of stiffness cost no
+/// digits. C is a sum of squares, without cancellation.
 ///
-/// Sums in a fixed order on the calling thread. Checked by tests/unit/coupling/coupled_factor_test.cc against dense
-/// algebra and CHOLMOD.
+/// Sums in a fixed order on the calling thread. Checked by
+/// tests/unit/coupling/coupled_factor_test.cc against dense algebra and CHOLMOD.
 template <typename Scalar>
 class SupernodalFactor {
  public:
@@ -32,7 +32,8 @@ class SupernodalFactor {
 
   /// Half a solve: keeps y = L11^-1 r and returns B S^-1 r = L21 y.
   void solve_forward(const Eigen::VectorXd& r, Eigen::VectorXd& gap_response);
-  /// The other half: x = S^-1 (r + B^T p) = L11^-T (y + L21^T p), with the y that solve_forward kept.
+  /// The other half: x = S^-1 (r + B^T p) = L11^-T (y + L21^T p), with the y that solve_forward
+  /// kept.
   void solve_backward(const Eigen::VectorXd& pressure, Eigen::VectorXd& x);
 
  private:

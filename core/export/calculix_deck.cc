@@ -84,7 +84,8 @@ constexpr char kHeading[] =
     "** Units: mm, N, MPa, tonne, s. Made for CalculiX; solve with: ccx NAME, the file being NAME.inp.\n"
     "** Nodes are doubled where a film opens. Rest shape, static: no inertia, no damping.\n";
 
-/// A comment on forces of the simulation that the deck leaves out, for whoever compares; empty when there are none.
+/// A comment on forces of the simulation that the deck leaves out, for whoever compares; empty when
+/// there are none.
 std::string name_what_is_left_out(const model::FaceModel& model, const plan::SimulationSpec& spec) {
   std::vector<std::string> left_out;
   if (!spec.ligaments.empty()) left_out.push_back("ligaments");

@@ -12,8 +12,8 @@ namespace lipofill::film {
 /// Sides of a cell, and at the same time the order of `FilmGrid::edge_of_side`.
 enum Side { kLowXi = 0, kHighXi = 1, kLowEta = 2, kHighEta = 3 };
 
-/// An open edge between two cells; fat flows through it. Its positive direction is from `left` to `right`, along +xi or
-/// +eta.
+/// An open edge between two cells; fat flows through it. Its positive direction is from `left` to
+/// `right`, along +xi or +eta.
 struct Edge {
   int left = 0;
   int right = 0;
@@ -27,9 +27,9 @@ struct LeakyWall {
   double conductance = 0.0;  ///< [m3/(Pa s)]
 };
 
-/// Topology of the staggered film grid: n_xi x n_eta slots over a box of the chart, of which those in a zone are cells.
-/// Pressure and volume live on cells, velocity on the open edges. Edges between two zones, or between a cell and no
-/// cell, are sealed walls and are not in the list.
+/// Topology of the staggered film grid: n_xi x n_eta slots over a box of the chart, of which those
+/// in a zone are cells. Pressure and volume live on cells, velocity on the open edges. Edges
+/// between two zones, or between a cell and no cell, are sealed walls and are not in the list.
 struct FilmGrid {
   geometry::ChartBox extent;
   int n_xi = 0;
@@ -56,7 +56,8 @@ struct FilmGrid {
 /// Slots on the two sides of a wall inside a zone, the lower one first.
 using WalledSlots = std::set<std::pair<int, int>>;
 
-/// Numbers cells and edges. `zone_of_slot`: (n_xi * n_eta), -1 where there is no film. Edges in `walls` are sealed.
+/// Numbers cells and edges. `zone_of_slot`: (n_xi * n_eta), -1 where there is no film. Edges in
+/// `walls` are sealed.
 /// Checked by tests/unit/film/edge_operators_test.cc.
 FilmGrid make_film_grid(const geometry::ChartBox& extent, int n_xi, int n_eta, const std::vector<int>& zone_of_slot,
                         const WalledSlots& walls = {});

@@ -9,7 +9,8 @@
 
 namespace lipofill::film {
 
-/// Flux through every open edge, F(D), as a function of what drives the fat across it, D = rho b . dX - G p [Pa].
+/// Flux through every open edge, F(D), as a function of what drives the fat across it, D = rho
+/// b . dX - G p [Pa].
 ///
 ///     F = W(k) D                                      Newtonian fat: linear, with inertia
 ///     F = f(|grad|) w D + W(h^3/(12 G dt)) (D - s)    other fat, a quadrant at a time
@@ -36,7 +37,8 @@ class FlowLaw {
   bool is_linear() const { return fat_.is_newtonian(); }
   /// Adds F(D) to `flux` (n_edges).
   void add_flux(const Eigen::VectorXd& drive, Eigen::Ref<Eigen::VectorXd> flux);
-  /// dF/dD as forms [m3/(Pa s)]. Where nothing flows it is kept just above zero, so that a pressure follows.
+  /// dF/dD as forms [m3/(Pa s)]. Where nothing flows it is kept just above zero, so that a pressure
+  /// follows.
   const QuadrantForms& linearise(const Eigen::VectorXd& drive);
 
  private:

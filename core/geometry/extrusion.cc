@@ -49,8 +49,8 @@ int layer_of_level(const LayeredGrid& grid, int level) {
   return layer;
 }
 
-/// Tries normals smoothed over longer and longer lengths and keeps the first that gives well-shaped hexahedra, or the
-/// best.
+/// Tries normals smoothed over longer and longer lengths and keeps the first that gives well-shaped
+/// hexahedra, or the best.
 WorstHexahedron extrude_along_smoothed_normals(const Eigen::MatrixXd& depth, const Eigen::Vector2d& spacing,
                                                LayeredGrid& grid) {
   const Eigen::Matrix3Xd normals =

@@ -31,7 +31,8 @@ struct LandmarkPoint {
   double forward = 0.0;  ///< [m]
 };
 
-/// A point on the outer skin, by whichever means is at hand. The last two are projected onto the outer skin.
+/// A point on the outer skin, by whichever means is at hand. The last two are projected onto the
+/// outer skin.
 using SkinPoint = std::variant<ChartPoint, Eigen::Vector3d, LandmarkPoint>;
 
 /// A flat rectangle in the plane z = 0, xi along +x, eta along +y, from the origin.
@@ -60,8 +61,8 @@ struct FaceGeometrySpec {
   std::vector<LayerGeometry> layers;  ///< from the skin inwards
 };
 
-/// A vertex of the scan that lies in the region and rides on the skin of the model: it moves by the skin's displacement
-/// at its place in the chart, bilinear between the nodes of the skin.
+/// A vertex of the scan that lies in the region and rides on the skin of the model: it moves by the
+/// skin's displacement at its place in the chart, bilinear between the nodes of the skin.
 struct Rider {
   int vertex = 0;  ///< index into FaceGeometry::scan
   ChartPoint place;
@@ -79,17 +80,19 @@ struct FaceGeometry {
   std::vector<std::string> scan_remarks;  ///< what cleaning did, a sentence each
 };
 
-/// Reports how far a build is, in [0, 1], and what it is doing. Returning false asks it to stop (CANCELLED).
+/// Reports how far a build is, in [0, 1], and what it is doing. Returning false asks it to stop
+/// (CANCELLED).
 using Progress = std::function<bool(double fraction, const char* stage)>;
 
 /// Cleans the scan, cuts the region, charts it, resamples it and extrudes the layers inwards.
 ///
-/// The chart is a conformal (or harmonic) map of the patch; its grid is smooth and free of folds. Only the outer skin
-/// takes part: the mouth bag and other inner surfaces of a scan are found by casting rays and left out. Errors:
-/// INVALID_ARGUMENT with field violations (fields named as in lipofill.v1.ModelSpec: "n_xi", "layers[1].thickness_mm",
-/// "scan_region.corners[2]", "scan_region.landmarks_mm", values in the units of those names) for what the caller gave;
-/// FAILED_PRECONDITION where the scan cannot be made good, saying where (scan coordinates in mm) and why;
-/// CANCELLED. Nothing is thrown. Deterministic.
+/// The chart is a conformal (or harmonic) map of the patch; its grid is smooth and free of folds.
+/// Only the outer skin takes part: the mouth bag and other inner surfaces of a scan are found by
+/// casting rays and left out. Errors: INVALID_ARGUMENT with field violations (fields named as in
+/// lipofill.v1.ModelSpec: "n_xi", "layers[1].thickness_mm", "scan_region.corners[2]",
+/// "scan_region.landmarks_mm", values in the units of those names) for what the caller gave;
+/// FAILED_PRECONDITION where the scan cannot be made good, saying where (scan coordinates in mm)
+/// and why; CANCELLED. Nothing is thrown. Deterministic.
 /// Checked by tests/unit/geometry/.
 absl::StatusOr<FaceGeometry> build_face_geometry(const FaceGeometrySpec& spec, const Progress& progress);
 
@@ -97,12 +100,12 @@ absl::StatusOr<FaceGeometry> build_face_geometry(const FaceGeometrySpec& spec, c
 /// square, layers.
 absl::Status check_face_geometry(const FaceGeometrySpec& spec);
 
-/// Lays layers under the skin of a geometry in place of those it has, as build_face_geometry does. FAILED_PRECONDITION
-/// where they fold, and INVALID_ARGUMENT as check_layers.
+/// Lays layers under the skin of a geometry in place of those it has, as build_face_geometry does.
+/// FAILED_PRECONDITION where they fold, and INVALID_ARGUMENT as check_layers.
 absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& geometry);
 
-/// The chart place of a skin point. INVALID_ARGUMENT (field violation "") when it names an unknown landmark, lies more
-/// than 10 mm from the outer skin, or is outside the region by more than 1e-6.
+/// The chart place of a skin point. INVALID_ARGUMENT (field violation "") when it names an unknown
+/// landmark, lies more than 10 mm from the outer skin, or is outside the region by more than 1e-6.
 absl::StatusOr<ChartPoint> locate_in_chart(const FaceGeometry& geometry, const SkinPoint& point);
 
 /// Position on the undeformed skin [m], bilinear between nodes.

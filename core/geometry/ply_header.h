@@ -34,8 +34,8 @@ struct PlyHeader {
   size_t body_line = 0;    ///< lines before the body
 };
 
-/// The header of a PLY file. Every element's count is checked against the bytes that follow, so that no count can make
-/// a reader loop or reserve beyond the file.
+/// The header of a PLY file. Every element's count is checked against the bytes that follow, so
+/// that no count can make a reader loop or reserve beyond the file.
 absl::StatusOr<PlyHeader> parse_ply_header(std::string_view bytes);
 
 }  // namespace lipofill::geometry

@@ -14,8 +14,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-/// A binary tree, split at the median of the longest side down to leaves of four triangles, of which every other level
-/// is then left out.
+/// A binary tree, split at the median of the longest side down to leaves of four triangles, of
+/// which every other level is then left out.
 struct RayTree::Builder {
   struct Box {
     Eigen::Vector3d low;

@@ -10,7 +10,8 @@
 
 namespace lipofill::geometry {
 
-/// The piece of outer skin around a region: one part, a little larger than the region, its small holes filled.
+/// The piece of outer skin around a region: one part, a little larger than the region, its small
+/// holes filled.
 struct RegionPatch {
   SurfaceMesh mesh;
   std::vector<int> whole_of_vertex;     ///< vertex of the cleaned scan, -1 for the middle of a filled hole
@@ -18,12 +19,12 @@ struct RegionPatch {
   std::vector<std::string> remarks;
 };
 
-/// The skin whose distances along the surface to the four corners add up to little more than those of a corner to the
-/// others: a convex surrounding of the quadrilateral.
+/// The skin whose distances along the surface to the four corners add up to little more than those
+/// of a corner to the others: a convex surrounding of the quadrilateral.
 /// @param skin     the outer skin near the region, one surface
 /// @param corners  on `skin`
-/// INVALID_ARGUMENT (fields "scan_region.corners[k]", "scan_region.corners") for corners on separate pieces of skin or
-/// out of bounds.
+/// INVALID_ARGUMENT (fields "scan_region.corners[k]", "scan_region.corners") for corners on
+/// separate pieces of skin or out of bounds.
 absl::StatusOr<RegionPatch> cut_region_patch(const SurfaceMesh& skin, const std::array<SurfacePoint, 4>& corners);
 
 }  // namespace lipofill::geometry

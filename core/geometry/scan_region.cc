@@ -47,7 +47,8 @@ bool needs_axes(const ScanRegionSpec& spec) {
   });
 }
 
-/// The axes given, or estimated; those of the scan where neither is possible and no corner needs them.
+/// The axes given, or estimated; those of the scan where neither is possible and no corner needs
+/// them.
 absl::StatusOr<HeadAxes> find_axes(const ScanRegionSpec& spec) {
   if (!spec.axes) {
     const auto estimated = estimate_head_axes(spec.landmarks);

@@ -18,8 +18,8 @@ struct ScanRegion {
   std::vector<std::string> remarks;
 };
 
-/// Cleans the scan, turns it right side out, places the corners on its outer skin and cuts the patch around them.
-/// Errors as build_face_geometry.
+/// Cleans the scan, turns it right side out, places the corners on its outer skin and cuts the
+/// patch around them. Errors as build_face_geometry.
 absl::StatusOr<ScanRegion> find_scan_region(const ScanRegionSpec& spec, const Progress& progress);
 
 }  // namespace lipofill::geometry

@@ -76,7 +76,8 @@ bool contains(const Quadrilateral& quad, const Eigen::Vector2d& p) {
   return true;
 }
 
-/// The first triangle with a corner in the quadrilateral that the map turns over; -1 when there is none.
+/// The first triangle with a corner in the quadrilateral that the map turns over; -1 when there is
+/// none.
 int find_fold(const RegionPatch& patch, const Eigen::Matrix2Xd& flat, const Quadrilateral& quad) {
   for (int t = 0; t < patch.mesh.n_triangles(); ++t) {
     const auto& [a, b, c] = patch.mesh.triangles[t];

@@ -17,7 +17,8 @@ struct FilmState {
   Eigen::VectorXd earlier_volume_rate;    ///< of the step before the last [m3/s] (n_cells)
   Eigen::VectorXd earlier_pressure_rate;  ///< the same [Pa/s] (n_cells)
   Eigen::VectorXd wall_stress;            ///< T of film::FilmStepInput [Pa m] (n_edges); empty: fat is not elastic
-  /// dt J when it was last kept, what solves of many cells are preconditioned with; empty: few cells.
+  /// dt J when it was last kept, what solves of many cells are preconditioned with; empty: few
+  /// cells.
   Eigen::VectorXd factored_mobility;
   Eigen::VectorXd is_entered;  ///< 1 where fat has parted the connective tissue, else 0 (n_cells); empty: all open
 };
@@ -39,8 +40,8 @@ struct SimulationState {
   std::array<Eigen::Matrix3Xd, 3> earlier_velocities;
   int equal_steps = 0;               ///< of the last one's size, in a row
   Eigen::VectorXd spring_is_intact;  ///< 1 or 0, of every spring of a ligament
-  /// Positions of the tissue when its system was last factored; the factor serves later steps until it no longer
-  /// converges.
+  /// Positions of the tissue when its system was last factored; the factor serves later steps until
+  /// it no longer converges.
   Eigen::Matrix3Xd factored_positions;
   Eigen::VectorXd factored_springs;  ///< spring_is_intact then
   double factored_dt = 0.0;          ///< [s]; 0: never factored

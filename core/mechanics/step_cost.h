@@ -5,8 +5,8 @@
 
 namespace lipofill::mechanics {
 
-/// CPU time of a step by phase [s], on its thread, tries that were taken back included: what it costs, however busy the
-/// machine. What is left of the total is bookkeeping.
+/// CPU time of a step by phase [s], on its thread, tries that were taken back included: what it
+/// costs, however busy the machine. What is left of the total is bookkeeping.
 struct StepTimes {
   double element = 0.0;   ///< forces and stiffness of the tissue
   double factor = 0.0;    ///< factorisation, compliance and preconditioner

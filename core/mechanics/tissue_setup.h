@@ -14,8 +14,8 @@
 
 namespace lipofill::mechanics {
 
-/// The model's hexahedra, split where the films lie, and how their nodes are held: what there is to build a tissue
-/// from.
+/// The model's hexahedra, split where the films lie, and how their nodes are held: what there is to
+/// build a tissue from.
 struct HeldMesh {
   coupling::SplitMesh split;
   solid::NodeSupports supports;

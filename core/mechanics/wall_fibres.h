@@ -33,9 +33,10 @@ struct FilmOnTissue {
   const coupling::WallNodes* nodes = nullptr;
 };
 
-/// Joins the walls of films: a spring at each point of a ligament, bilinear between the nodes around it, and one
-/// between the two copies of every open node, its stiffness that of connective tissue times the node's share of area.
-/// Field violations are named below "ligaments[index]". Checked by tests/verification/coupling/ligament_test.cc and
+/// Joins the walls of films: a spring at each point of a ligament, bilinear between the nodes
+/// around it, and one between the two copies of every open node, its stiffness that of connective
+/// tissue times the node's share of area. Field violations are named below "ligaments[index]".
+/// Checked by tests/verification/coupling/ligament_test.cc and
 /// tests/unit/simulation/anatomy_input_test.cc.
 absl::StatusOr<WallFibres> place_wall_fibres(const model::FaceModel& model, const std::vector<FilmOnTissue>& films,
                                              const std::vector<plan::LigamentSpec>& ligaments,

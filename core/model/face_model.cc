@@ -102,8 +102,8 @@ geometry::FaceGeometrySpec make_geometry_spec(const FaceModelSpec& spec) {
   return geometry_spec;
 }
 
-/// The charted skin, without the layers: their thickness depends on where they lie. Everything wrong with the layers is
-/// told before the scan is worked on.
+/// The charted skin, without the layers: their thickness depends on where they lie. Everything
+/// wrong with the layers is told before the scan is worked on.
 absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec, const geometry::Progress& progress) {
   geometry::FaceGeometrySpec geometry_spec = make_geometry_spec(spec);
   if (const absl::Status valid = geometry::check_face_geometry(geometry_spec); !valid.ok()) return valid;

@@ -29,8 +29,8 @@ struct FilmLayout {
   geometry::ChartPoint cell_centre(int cell) const;
 };
 
-/// Decides which cells belong to which zone and where in the tissue the film lies. Field violations are named below
-/// "films[index]", values in the units of lipofill.v1.Film.
+/// Decides which cells belong to which zone and where in the tissue the film lies. Field violations
+/// are named below "films[index]", values in the units of lipofill.v1.Film.
 absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmSpec& spec);
 
 /// Middle of a slot of a film's grid, cell or not.
@@ -39,8 +39,9 @@ geometry::ChartPoint slot_centre(const FilmSpec& spec, int slot);
 /// Positions on the undeformed skin over the vertices of a film's grid [m] (3, n_vertices).
 Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film::FilmGrid& film);
 
-/// Flags of the level's nodes that are doubled: all quadrilaterals around the node lie in cells of one zone, on one
-/// side of its walls. The tissue stays bonded along the edges of zones and along walls.
+/// Flags of the level's nodes that are doubled: all quadrilaterals around the node lie in cells of
+/// one zone, on one side of its walls. The tissue stays bonded along the edges of zones and along
+/// walls.
 std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const FilmLayout& film);
 
 }  // namespace lipofill::plan

@@ -9,7 +9,8 @@
 
 namespace lipofill::simulation {
 
-/// A vertex that moves with the skin, between four of its nodes, and the cell of the outermost film below it.
+/// A vertex that moves with the skin, between four of its nodes, and the cell of the outermost film
+/// below it.
 struct SkinPoint {
   int vertex = 0;  ///< of the mesh that it belongs to
   std::array<int, 4> nodes{};
@@ -27,7 +28,8 @@ struct FrameLayout {
 };
 
 /// @param skin  of the simulation whose films these are
-/// @param face  whose skin and scan the frame shows: that model's own or another one's of the same chart
+/// @param face  whose skin and scan the frame shows: that model's own or another one's of the same
+///              chart
 FrameLayout make_frame_layout(const geometry::LayeredGrid& skin, const std::vector<plan::FilmLayout>& films,
                               const geometry::FaceGeometry& face);
 

@@ -72,7 +72,8 @@ struct StepReport {
   std::vector<double> probe_pressure;   ///< [Pa]
 };
 
-/// A mesh whose points move: what viewers draw. `kind` 3: triangles, 4: quadrilaterals, 8: hexahedra.
+/// A mesh whose points move: what viewers draw. `kind` 3: triangles, 4: quadrilaterals, 8:
+/// hexahedra.
 struct MeshTopology {
   std::string name;              ///< "skin", "scan", "film/<name>", "tissue"
   std::vector<float> points_mm;  ///< (n_points, 3) at rest
@@ -115,11 +116,13 @@ class Simulation {
   std::vector<ZoneReport> zone_reports() const;
   std::vector<LigamentReport> ligament_reports() const;
 
-  /// Adds an injection to the plan; without a start it begins now, or after the last one still due. Field violations
-  /// named as in lipofill.v1.Injection. A settled or finished simulation does not take one: FAILED_PRECONDITION.
+  /// Adds an injection to the plan; without a start it begins now, or after the last one still due.
+  /// Field violations named as in lipofill.v1.Injection. A settled or finished simulation does not
+  /// take one: FAILED_PRECONDITION.
   absl::Status inject(const plan::InjectionSpec& injection);
-  /// The injection that inject() would add, with its start, or why it would refuse it. Whoever must note an injection
-  /// before it takes effect notes this one: inject() of it, at the same step of an equal simulation, does the same.
+  /// The injection that inject() would add, with its start, or why it would refuse it. Whoever must
+  /// note an injection before it takes effect notes this one: inject() of it, at the same step of
+  /// an equal simulation, does the same.
   absl::StatusOr<plan::InjectionSpec> resolve(const plan::InjectionSpec& injection) const;
   const plan::SimulationSpec& spec() const;
   const model::FaceModel& model() const;
@@ -132,7 +135,8 @@ class Simulation {
   /// models of a thousand hexahedra and more [B].
   uint64_t memory_bytes() const;
 
-  /// The meshes at rest: "skin", "scan" (where the model has one), "film/<name>" for each film, "tissue".
+  /// The meshes at rest: "skin", "scan" (where the model has one), "film/<name>" for each film,
+  /// "tissue".
   std::vector<MeshTopology> topology() const;
 
   /// Fields of the present state on the named meshes (all when empty):
@@ -146,15 +150,17 @@ class Simulation {
   ///
   std::vector<FrameField> frame(const std::vector<std::string>& meshes) const;
 
-  /// Skin and scan of another model of the same chart, moved and coloured by this simulation: the fields of frame() on
-  /// "skin" and "scan", displacements bilinear between the nodes of this skin.
+  /// Skin and scan of another model of the same chart, moved and coloured by this simulation: the
+  /// fields of frame() on "skin" and "scan", displacements bilinear between the nodes of this skin.
   std::vector<FrameField> frame_on(const geometry::FaceGeometry& face) const;
 
-  /// SHA-256 of the state: positions, velocities, volumes, pressures, time; equal for equal runs, byte for byte.
+  /// SHA-256 of the state: positions, velocities, volumes, pressures, time; equal for equal runs,
+  /// byte for byte.
   std::string state_hash() const;
 
-  /// The whole mutable state as bytes, and back into a simulation created from the same model and specification:
-  /// restore + advance_step gives the bytes of advance_step alone. DATA_LOSS for bytes that are not such a state.
+  /// The whole mutable state as bytes, and back into a simulation created from the same model and
+  /// specification: restore + advance_step gives the bytes of advance_step alone. DATA_LOSS for
+  /// bytes that are not such a state.
   std::string snapshot() const;
   absl::Status restore(std::string_view snapshot);
 

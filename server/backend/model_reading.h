@@ -18,7 +18,8 @@ struct ScanIds {
 /// Field violations for names that are of no scan of the patient, relative to the message.
 absl::StatusOr<ScanIds> scans_of(const std::string& patient, const v1::ModelSpec& spec);
 
-/// A specification in SI, with the surfaces of its scans read. Field violations relative to the message.
+/// A specification in SI, with the surfaces of its scans read. Field violations relative to the
+/// message.
 absl::StatusOr<model::FaceModelSpec> read_model_spec(Backend& backend, const std::string& patient,
                                                      const v1::ModelSpec& message);
 

@@ -32,7 +32,8 @@ absl::StatusOr<bool> ResultKeeper::keep_command(const CommandRecord& command, co
   return store_.append_command(command, "", request);
 }
 
-// The plan that is kept follows what was injected. The session's lock keeps others from doing the same meanwhile.
+// The plan that is kept follows what was injected. The session's lock keeps others from doing the
+// same meanwhile.
 absl::StatusOr<bool> ResultKeeper::keep_injection(const CommandRecord& command, double start_s,
                                                   const RequestKey& request) {
   v1::Injection injection;

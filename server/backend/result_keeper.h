@@ -19,8 +19,8 @@ struct CheckpointOptions {
   uint64_t most_bytes = uint64_t{8} << 30;  ///< of all together
 };
 
-/// Puts what sessions do and compute into the store, as messages of the wire schema, and lets go of sessions that have
-/// ended. Counts what they do.
+/// Puts what sessions do and compute into the store, as messages of the wire schema, and lets go of
+/// sessions that have ended. Counts what they do.
 class ResultKeeper : public SessionSink {
  public:
   ResultKeeper(Store& store, CheckpointFiles& files, SessionManager& sessions, const CheckpointOptions& options,

@@ -158,7 +158,8 @@ absl::Status bring_back(Backend& backend, const SimulationRecord& record) {
   return absl::OkStatus();
 }
 
-/// A simulation whose model, plan or log is lost has failed; one that met a shortage may come back another time.
+/// A simulation whose model, plan or log is lost has failed; one that met a shortage may come back
+/// another time.
 void tell_failure(Backend& backend, const SimulationRecord& record, const absl::Status& why) {
   const bool is_lost = absl::IsDataLoss(why) || absl::IsNotFound(why) || absl::IsInvalidArgument(why);
   const std::string reason =

@@ -9,8 +9,8 @@
 
 namespace lipofill::server {
 
-/// The meshes of a model at rest: "skin" (quadrilaterals), "tissue" (hexahedra, not yet split by any film) and, where
-/// it has one, "scan".
+/// The meshes of a model at rest: "skin" (quadrilaterals), "tissue" (hexahedra, not yet split by
+/// any film) and, where it has one, "scan".
 std::vector<simulation::MeshTopology> make_model_meshes(const model::FaceModel& model);
 
 grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend, grpc::CallbackServerContext* context,

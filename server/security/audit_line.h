@@ -28,8 +28,8 @@ struct AuditHead {
 /// SHA-256 of a line without its end, in hex.
 std::string hash_of_line(std::string_view line);
 
-/// The line that follows `head`: a JSON object with "number", "time", the entry, and "previous", the hash of the line
-/// before.
+/// The line that follows `head`: a JSON object with "number", "time", the entry, and "previous",
+/// the hash of the line before.
 std::string make_audit_line(const AuditEntry& entry, const AuditHead& head);
 
 /// Number and "previous" of a line; false for one that is none, as a loss of power may leave.

@@ -69,11 +69,12 @@ struct SimulationRecord {
   std::string tenant = kLocalTenant;
 };
 
-/// A client's command. Those that set the state are told by it: start and resume RUNNING, pause PAUSED.
+/// A client's command. Those that set the state are told by it: start and resume RUNNING, pause
+/// PAUSED.
 enum class CommandKind { kStart = 1, kPause, kResume, kStop, kInject, kRestore };
 
-/// One acknowledged command, in the order they took effect. A command is on course unless its simulation was restored
-/// to a state before it.
+/// One acknowledged command, in the order they took effect. A command is on course unless its
+/// simulation was restored to a state before it.
 struct CommandRecord {
   std::string simulation;
   uint64_t number = 0;  ///< 1, 2, ...; given by the store
@@ -83,7 +84,8 @@ struct CommandRecord {
   int64_t create_time_us = 0;
 };
 
-/// kAutomatic: made by the daemon, gone with the run. kAsked: made by a client. kOrigin: what a simulation began from.
+/// kAutomatic: made by the daemon, gone with the run. kAsked: made by a client. kOrigin: what a
+/// simulation began from.
 enum class CheckpointKind { kAutomatic = 1, kAsked, kOrigin };
 
 /// A state of a simulation, kept in a file.
@@ -115,8 +117,8 @@ struct SeriesChunk {
   std::string rows_message;
 };
 
-/// Makes a create idempotent: the same method and id again, by the same tenant, give the resource made the first time.
-/// Empty id: no such promise.
+/// Makes a create idempotent: the same method and id again, by the same tenant, give the resource
+/// made the first time. Empty id: no such promise.
 struct RequestKey {
   std::string method;
   std::string id;

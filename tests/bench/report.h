@@ -23,7 +23,8 @@ struct Findings {
       nlohmann::ordered_json::array();  ///< of scales too large to be held beside the others
 };
 
-/// The content of bench.json. Times are processor time of the one thread that works, but for names with `wall`.
+/// The content of bench.json. Times are processor time of the one thread that works, but for names
+/// with `wall`.
 nlohmann::ordered_json make_report(const Findings& findings);
 
 /// The report for people.

@@ -52,7 +52,8 @@ absl::Status WholeSteps::advance(int n_steps) {
   return absl::OkStatus();
 }
 
-/// A frame of some meshes, all when empty, and its encoding, for one viewer or for fifty: they share it.
+/// A frame of some meshes, all when empty, and its encoding, for one viewer or for fifty: they
+/// share it.
 void WholeSteps::take_frame(const std::vector<std::string>& meshes, const std::string& suffix) {
   Stopwatch watch;
   server::Frame frame;

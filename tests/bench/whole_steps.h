@@ -14,8 +14,9 @@
 
 namespace lipofill::bench {
 
-/// Steps of the plan's own size in the midst of its injection, as a session takes them: advance, take a frame of what
-/// viewers see by default, encode it. The same simulated time at every scale, so that scales can be compared.
+/// Steps of the plan's own size in the midst of its injection, as a session takes them: advance,
+/// take a frame of what viewers see by default, encode it. The same simulated time at every scale,
+/// so that scales can be compared.
 class WholeSteps {
  public:
   /// Goes to the midst of the injection in larger steps, which are not measured.

@@ -14,8 +14,8 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-// A face is recognised by what is around the place: how many radii of the region the picture shows, and at least how
-// much.
+// A face is recognised by what is around the place: how many radii of the region the picture shows,
+// and at least how much.
 constexpr double kSurroundings = 2.0;
 constexpr double kPlateHalfHeight = 0.76;  // of the same: a plate is shown whole
 constexpr double kLeastHalfHeight = 92.0;  // [mm]: a cheek with nose and ear

@@ -24,8 +24,8 @@ class TarReader {
  public:
   static absl::StatusOr<TarReader> open(const std::filesystem::path& file);
 
-  /// Goes to the next file whose name ends in `suffix`. NOT_FOUND when there is none; INVALID_ARGUMENT for what is no
-  /// tar.
+  /// Goes to the next file whose name ends in `suffix`. NOT_FOUND when there is none;
+  /// INVALID_ARGUMENT for what is no tar.
   absl::StatusOr<TarEntry> find(const std::string& suffix);
 
   /// The next bytes of the file found. INVALID_ARGUMENT where the tar ends before.

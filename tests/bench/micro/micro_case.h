@@ -15,7 +15,8 @@ struct MicroCase {
   std::unique_ptr<simulation::Simulation> simulation;  ///< at rest
 };
 
-/// The case of a scale, made when it is first asked for; the last one made is kept. Ends the program when it cannot be.
+/// The case of a scale, made when it is first asked for; the last one made is kept. Ends the
+/// program when it cannot be.
 MicroCase& micro_case(int64_t scale);
 
 }  // namespace lipofill::bench

@@ -24,8 +24,9 @@ struct SessionsRow {
   double left_mb = 0.0;               ///< more than with the model alone once they are deleted
 };
 
-/// Runs `sessions` simulations of the plan for a simulated time [s] on a fresh daemon. Figures are taken from the start
-/// of the first until the first one ends. DATA_LOSS when they do not end with the same bytes.
+/// Runs `sessions` simulations of the plan for a simulated time [s] on a fresh daemon. Figures are
+/// taken from the start of the first until the first one ends. DATA_LOSS when they do not end with
+/// the same bytes.
 absl::StatusOr<SessionsRow> measure_sessions(const client::PlanFile& plan, int workers, int sessions,
                                              double simulated_s);
 

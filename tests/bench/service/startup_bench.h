@@ -26,7 +26,8 @@ absl::StatusOr<StartupTable> measure_served_startup(const client::PlanFile& plan
 /// In this process, with the parts of building a model apart.
 absl::StatusOr<StartupTable> measure_startup(const client::PlanFile& plan);
 
-/// Writes the plan's scan with every triangle cut in four, `times` times over, in the format of the file's extension.
+/// Writes the plan's scan with every triangle cut in four, `times` times over, in the format of the
+/// file's extension.
 absl::Status write_refined_scan(const client::PlanFile& plan, int times, const std::filesystem::path& file);
 
 }  // namespace lipofill::bench

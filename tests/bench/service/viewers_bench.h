@@ -19,9 +19,9 @@ struct ViewersRow {
   double sent_mb = 0.0;          ///< to all viewers
 };
 
-/// Runs the plan for a simulated time [s] with each number of viewers in turn, `rounds` times over, on one daemon. A
-/// row a number of viewers: the run with the median of worker_cpu_s. Viewers watch the meshes named (none: what the
-/// daemon shows who names none), LATEST, every step.
+/// Runs the plan for a simulated time [s] with each number of viewers in turn, `rounds` times over,
+/// on one daemon. A row a number of viewers: the run with the median of worker_cpu_s. Viewers watch
+/// the meshes named (none: what the daemon shows who names none), LATEST, every step.
 absl::StatusOr<std::vector<ViewersRow>> measure_viewers(const client::PlanFile& plan, const std::vector<int>& viewers,
                                                         const std::vector<std::string>& meshes, double simulated_s,
                                                         int rounds);

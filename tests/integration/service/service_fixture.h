@@ -98,7 +98,8 @@ class ServiceTest : public ::testing::Test {
   /// Polls until it has ended.
   v1::Simulation await_end(const std::string& name);
   bool is_serving();
-  /// Calls a method, whether it streams or not, with one message of these bytes; for calls that are to fail.
+  /// Calls a method, whether it streams or not, with one message of these bytes; for calls that are
+  /// to fail.
   grpc::Status call_raw(const std::string& method, const std::string& bytes);
   /// Everything the store lists, as text.
   std::string store_content();

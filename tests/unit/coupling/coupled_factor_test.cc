@@ -10,7 +10,8 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// A stiffness like that of a plate on springs, scaled as tissue in SI is, and a B whose entries are areas.
+/// A stiffness like that of a plate on springs, scaled as tissue in SI is, and a B whose entries
+/// are areas.
 struct Case {
   Sparse s_lower;
   Sparse b;
@@ -153,7 +154,8 @@ TEST(CoupledFactor, NeedsFloat64WhereFloat32HasNoPivot) {
 }
 
 TEST(CoupledFactor, KnowsItsMemoryBeforeItFactors) {
-  // At most the whole triangle twice over (supernodes are padded), at least the triangle of S itself.
+  // At most the whole triangle twice over (supernodes are padded), at least the triangle of S
+  // itself.
   const Case c(12, 9, 1.0, 1.0, 6);
   const auto analysis = *FactorAnalysis::create(c.s_lower, c.b);
   const auto n = static_cast<double>(c.s_dense.rows() + 9);

@@ -1,6 +1,6 @@
-// Elastica (verification case 9): a slender cantilever with a dead load across its tip, large rotations at small
-// strains. The solid-shell in a strip one element wide and thick, nu = 0 so that EI is that of a beam. Reference:
-// elliptic integrals.
+// Elastica (verification case 9): a slender cantilever with a dead load across its tip, large
+// rotations at small strains. The solid-shell in a strip one element wide and thick, nu = 0 so that
+// EI is that of a beam. Reference: elliptic integrals.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// A picture of the scene on the page: one WebGL canvas, a camera that is turned by hand, rays under the cursor.
+// A picture of the scene on the page: one WebGL canvas, a camera that is turned by hand, rays under
+// the cursor.
 import "@kitware/vtk.js/Rendering/OpenGL/Camera";
 import "@kitware/vtk.js/Rendering/OpenGL/Renderer";
 import "@kitware/vtk.js/Rendering/OpenGL/Actor";
@@ -79,7 +80,10 @@ export class Viewport {
     this.request();
   }
 
-  /** Pixels of the picture to those of the screen; fewer where a machine is too slow for all of them. */
+  /**
+   * Pixels of the picture to those of the screen; fewer where a machine is too slow for all of
+   * them.
+   */
   set detail(share: number) {
     if (share === this.sharpness) return;
     this.sharpness = share;

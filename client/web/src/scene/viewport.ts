@@ -51,7 +51,7 @@ export class Viewport {
   constructor(readonly container: HTMLElement) {
     this.renderWindow.addRenderer(this.renderer);
     this.renderWindow.addView(this.gl);
-    const canvas = this.gl.getCanvas() as HTMLCanvasElement;
+    const canvas = this.gl.getCanvas()!;
     canvas.getContext("webgl2", {
       antialias: hasGraphicsCard(),
       depth: true,
@@ -176,7 +176,7 @@ export class Viewport {
   }
 
   canvas(): HTMLCanvasElement {
-    return this.gl.getCanvas() as HTMLCanvasElement;
+    return this.gl.getCanvas()!;
   }
 
   dispose(): void {

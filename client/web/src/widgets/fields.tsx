@@ -136,7 +136,7 @@ export function FileButton({
   label: string;
   accept?: string;
   folder?: boolean;
-  onFiles: (files: File[]) => void;
+  onFiles: (files: File[]) => void | Promise<void>;
 }) {
   return (
     <label class="button">
@@ -150,7 +150,7 @@ export function FileButton({
         onChange={(event) => {
           const files = Array.from(event.currentTarget.files ?? []);
           event.currentTarget.value = "";
-          if (files.length > 0) onFiles(files);
+          if (files.length > 0) void onFiles(files);
         }}
       />
     </label>

@@ -43,7 +43,7 @@ afterEach(async ({ task }) => {
 const shownTime = (): Promise<number> =>
   page.evaluate(() => parseFloat(document.querySelector(".timeline output")?.textContent ?? "0"));
 const pictures = (): Promise<number> =>
-  page.evaluate(() => Number(document.querySelector<HTMLElement>(".stage")?.dataset["pictures"] ?? 0));
+  page.evaluate(() => Number(document.querySelector<HTMLElement>(".stage")?.dataset.pictures ?? 0));
 const laterThan = (time: number): Promise<unknown> =>
   page.waitForFunction(
     (least) => parseFloat(document.querySelector(".timeline output")?.textContent ?? "0") > least,

@@ -44,7 +44,9 @@ const inBrowser = (): Pixels => {
   };
 };
 
-type WithPixels = { pixels: Pixels };
+interface WithPixels {
+  pixels: Pixels;
+}
 
 export class PictureReader {
   private constructor(private readonly page: Page) {}

@@ -34,7 +34,7 @@ struct LigamentFigures {
 struct PlacedLigament {
   std::vector<geometry::ChartPoint> points;  ///< those of its points that lie in the charted region, at least one
   int points_outside = 0;                    ///< those that do not
-  LigamentFigures figures;                   ///< of each point
+  LigamentFigures figures;                   ///< every point has these
 };
 
 /// Returns the place where the named ligament ("zygomatic_left") reaches the skin.

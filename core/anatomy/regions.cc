@@ -16,7 +16,7 @@ namespace {
 struct RegionRow {
   const char* name;
   std::vector<std::pair<const char*, double>> weights;  ///< without their side
-  double outward_mm;                                    ///< to the side of the face it lies on
+  double outward_mm;                                    ///< the centre lies this far towards its side of the face
   double up_mm;
   double forward_mm;
   const char* axis_from;

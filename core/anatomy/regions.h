@@ -13,7 +13,7 @@ namespace lipofill::anatomy {
 struct Region {
   geometry::LandmarkPoint centre;
   std::string axis_from;     ///< the long axis points from this landmark
-  std::string axis_to;       ///< to this one
+  std::string axis_to;       ///< the axis runs to this landmark
   double half_length = 0.0;  ///< [m]
   double half_width = 0.0;   ///< [m]
 };
@@ -27,7 +27,7 @@ absl::StatusOr<Region> find_region(std::string_view name);
 
 /// A region brought to a face: centre and axes in the scan's frame.
 struct PlacedRegion {
-  Eigen::Vector3d centre;    ///< on the skin [m]
+  Eigen::Vector3d centre;    ///< the centre lies on the skin [m]
   Eigen::Vector3d along;     ///< unit
   double half_length = 0.0;  ///< [m]
   double half_width = 0.0;   ///< [m]

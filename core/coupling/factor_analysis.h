@@ -24,8 +24,8 @@ class FactorAnalysis {
   struct Supernode {
     int first_column = 0;
     int n_columns = 0;
-    int n_rows = 0;           ///< with those of the triangle
-    int n_tissue_rows = 0;    ///< of them degrees of freedom; the rest are pressures
+    int n_rows = 0;           ///< the triangle's are counted too
+    int n_tissue_rows = 0;    ///< so many are degrees of freedom; the rest are pressures
     std::int64_t rows = 0;    ///< first of its rows in rows()
     std::int64_t values = 0;  ///< first of its values
   };

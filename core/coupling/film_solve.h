@@ -16,14 +16,14 @@ struct FilmSolution {
   std::vector<Eigen::VectorXd> flux;  ///< a film [m3/s]
   int iterations = 0;
   bool converged = false;
-  double change = 0.0;  ///< of the volume in the last iteration, relative to the fullest cell
+  double change = 0.0;  ///< the last iteration changed the volume so much, relative to the fullest cell
 };
 
 /// Tolerance of a film step, relative to the volume of the fullest cell. A solution with a negative
 /// volume is solved on to the tolerances of this type's own.
 struct FilmTolerance {
-  double change = 1e-10;    ///< of the volume, from one iteration on the thickness to the next
-  double mismatch = 1e-11;  ///< of gap and volume in a cell
+  double change = 1e-10;    ///< bounds how the volume changes from one iteration on the thickness to the next
+  double mismatch = 1e-11;  ///< bounds how gap and volume of a cell differ
 };
 
 /// Solves the film's step with the mobility at the new thickness: Picard iteration on the
@@ -75,7 +75,7 @@ class FilmSolver {
   bool is_linear_ = true;
   std::vector<char> held_;
   std::vector<Eigen::VectorXd> direction_;  ///< flux whose sign tells where each edge is upwind
-  std::vector<Eigen::VectorXi> turns_;      ///< of that, in the step under way
+  std::vector<Eigen::VectorXi> turns_;      ///< count how often that sign turned in the step under way
   Eigen::VectorXd guess_;                   ///< volume whose thickness the mobility has
   Eigen::VectorXd moved_;                   ///< C p
   Eigen::VectorXd residual_;                ///< r = V' - g0 - C p

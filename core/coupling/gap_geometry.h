@@ -27,7 +27,7 @@ struct GapGeometry {
     Lanes s[2], t[2];  ///< Gauss points in the quadrilateral
     Lanes weight;
     int outer[4][kLanes], inner[4][kLanes];  ///< nodes of the quadrilateral
-    int wall_place[4][kLanes];               ///< in `wall_places`, by corner
+    int wall_place[4][kLanes];               ///< each corner has its place in `wall_places`
     int cell[kLanes];                        ///< -1: none
   };
   /// A place of the walls under a cell, and where its six values of B are, -1: fixed.
@@ -44,7 +44,7 @@ struct GapGeometry {
   std::vector<Batch> batches;
   std::vector<WallPlace> wall_places;
   std::vector<Vertex> vertices;
-  Eigen::SparseMatrix<double> pattern;  ///< of B (n_cells, n_dofs), zeros
+  Eigen::SparseMatrix<double> pattern;  ///< holds zeros where B has entries (n_cells, n_dofs)
 };
 
 /// @param dof_of_component  degree of freedom of component c of node a at 3 a + c, -1 where fixed

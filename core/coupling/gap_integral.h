@@ -9,9 +9,9 @@ namespace lipofill::coupling {
 template <typename T>
 struct GapPiece {
   Vector3<T> middle[4];    ///< half-way between the walls [m]
-  Vector3<T> distance[4];  ///< from the inner to the outer wall [m]
+  Vector3<T> distance[4];  ///< it points from the inner to the outer wall [m]
   T s[2], t[2];            ///< places of the Gauss points
-  T weight;                ///< of each of the four
+  T weight;                ///< each of the four has it
 };
 
 /// Derivatives of a piece's volume [m2].
@@ -32,8 +32,8 @@ LIPOFILL_INLINE T integrate_piece(const GapPiece<T>& piece, GapGradient<T>* grad
   using Vector = Vector3<T>;
   const auto& m = piece.middle;
   const auto& d = piece.distance;
-  const Vector m_along_s[2] = {m[1] - m[0], m[2] - m[3]};  // at t = 0, 1
-  const Vector m_along_t[2] = {m[3] - m[0], m[2] - m[1]};  // at s = 0, 1
+  const Vector m_along_s[2] = {m[1] - m[0], m[2] - m[3]};  // holds at t = 0, 1
+  const Vector m_along_t[2] = {m[3] - m[0], m[2] - m[1]};  // holds at s = 0, 1
   const Vector d_along_s[2] = {d[1] - d[0], d[2] - d[3]};
   const Vector d_along_t[2] = {d[3] - d[0], d[2] - d[1]};
   const T one = T{} + 1.0;

@@ -10,8 +10,8 @@ namespace lipofill::coupling {
 
 /// Counts since the start.
 struct PressureCounts {
-  long iterative_solves = 0;  ///< by conjugate gradients
-  long iterations = 0;        ///< of those
+  long iterative_solves = 0;  ///< conjugate gradients made them
+  long iterations = 0;        ///< those took so many
   long fallbacks = 0;         ///< times that they did not converge
 };
 

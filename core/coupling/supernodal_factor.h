@@ -47,13 +47,13 @@ class SupernodalFactor {
 
   std::shared_ptr<const FactorAnalysis> analysis_;
   std::vector<Scalar> values_;
-  std::vector<Scalar> buffer_;  ///< of one update, or of one supernode's rows
-  std::vector<Scalar> square_;  ///< of one supernode, of its pressure rows
+  std::vector<Scalar> buffer_;  ///< holds one update, or one supernode's rows
+  std::vector<Scalar> square_;  ///< holds one supernode's product of its pressure rows
   Matrix gathered_;             ///< pressure rows of several supernodes (n_cells, kGatheredColumns)
   Matrix sum_;                  ///< C, scaled, lower triangle
-  std::vector<int> position_;   ///< of each row of L in the supernode under way
+  std::vector<int> position_;   ///< the supernode under way has each row of L there
   std::vector<int> relative_;   ///< positions of an update's rows
-  Eigen::VectorXd scale_;       ///< of each degree of freedom
+  Eigen::VectorXd scale_;       ///< every degree of freedom has one
   double pressure_scale_ = 1.0;
   Vector forward_;  ///< y, and below it L21 y
   Vector solution_;

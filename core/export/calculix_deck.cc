@@ -106,7 +106,7 @@ std::string name_what_is_left_out(const model::FaceModel& model, const plan::Sim
 struct CalculixDeck::Content {
   mechanics::HeldMesh held;
   int hexahedra_a_layer_level = 0;
-  std::vector<int> first_level;  ///< of each layer, and one past the last
+  std::vector<int> first_level;  ///< each layer begins there; one more ends the last
   std::vector<model::TissueLayerSpec> layers;
   std::vector<FilmWalls> films;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();

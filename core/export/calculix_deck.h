@@ -54,7 +54,7 @@ class CalculixDeck {
   explicit CalculixDeck(std::unique_ptr<Content> content);
   std::unique_ptr<Content> content_;
   size_t section_ = 0;  ///< next to be read
-  size_t line_ = 0;     ///< of that section; its head counts as line 0
+  size_t line_ = 0;     ///< counts the lines of that section; its head is line 0
 };
 
 }  // namespace lipofill::exporting

@@ -27,8 +27,8 @@ class Advection {
 
  private:
   const FilmGrid* grid_;
-  std::vector<double> flux_xi_;   ///< on lines of constant xi, (n_xi + 1, n_eta); 0 on sealed edges
-  std::vector<double> flux_eta_;  ///< on lines of constant eta, (n_xi, n_eta + 1)
+  std::vector<double> flux_xi_;   ///< crosses lines of constant xi, (n_xi + 1, n_eta); 0 on sealed edges
+  std::vector<double> flux_eta_;  ///< crosses lines of constant eta, (n_xi, n_eta + 1)
 };
 
 Eigen::VectorXd advect_velocity(const FilmGrid& grid, const FilmMetric& metric, const Eigen::VectorXd& velocity,

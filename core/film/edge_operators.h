@@ -80,9 +80,9 @@ class PressureOperator {
   /// sealed side is zero and goes to the cell's own diagonal value.
   struct CellSlots {
     std::int32_t diagonal;
-    std::int32_t neighbour_diagonal[4];     ///< by Side
+    std::int32_t neighbour_diagonal[4];     ///< Side is the index
     std::int32_t with_neighbour[4][2];      ///< (cell, neighbour) and (neighbour, cell)
-    std::int32_t between_neighbours[4][2];  ///< by quadrant, the two neighbours that it touches
+    std::int32_t between_neighbours[4][2];  ///< a quadrant has the two neighbours that it touches
   };
   struct LeakSlots {
     std::int32_t left, right, left_right, right_left;

@@ -30,8 +30,8 @@ void update_film_metric(const FilmGrid& grid, FilmMetric& metric) {
     const Eigen::Vector3d x10 = vertices.col(grid.vertex(i + 1, j));
     const Eigen::Vector3d x01 = vertices.col(grid.vertex(i, j + 1));
     const Eigen::Vector3d x11 = vertices.col(grid.vertex(i + 1, j + 1));
-    const std::array<Eigen::Vector3d, 2> g1 = {x10 - x00, x11 - x01};  // by t
-    const std::array<Eigen::Vector3d, 2> g2 = {x01 - x00, x11 - x10};  // by s
+    const std::array<Eigen::Vector3d, 2> g1 = {x10 - x00, x11 - x01};  // t is the index
+    const std::array<Eigen::Vector3d, 2> g2 = {x01 - x00, x11 - x10};  // s is the index
     double area = 0.0;
     for (int q = 0; q < 4; ++q) {
       metric.quadrants[cell][q] = metric_of(g1[q >> 1], g2[q & 1]);

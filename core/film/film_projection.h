@@ -77,7 +77,7 @@ class FilmProjection {
   PressureOperator pressure_operator_;
   FlowLaw law_;
   FilmStepInput input_;
-  Eigen::VectorXd thickness_;  ///< of the guess [m] (n_cells)
+  Eigen::VectorXd thickness_;  ///< the guess has this thickness [m] (n_cells)
   Eigen::VectorXd edge_thickness_;
   Eigen::VectorXd drive_;  ///< D, of the last call that needed it [Pa] (n_edges)
   Eigen::VectorXd leak_conductance_;

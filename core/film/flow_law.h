@@ -60,7 +60,7 @@ class FlowLaw {
   Fat fat_;
   double dt_ = 0.0;
   QuadrantForms unit_;                              ///< W(1) of the step's metric
-  QuadrantForms linear_;                            ///< with inertia: W(k); else the elastic part
+  QuadrantForms linear_;                            ///< it holds W(k) where there is inertia, else the elastic part
   QuadrantForms reference_;                         ///< W(h^3/(12 K)), without inertia
   QuadrantForms tangent_;                           ///< without inertia
   std::vector<std::array<Quadrant, 4>> quadrants_;  ///< empty: with inertia

@@ -45,7 +45,7 @@ class ImplicitViscosity {
  private:
   /// A vertex whose four edges are open.
   struct InnerVertex {
-    std::array<int, 4> cells;    ///< by (side of xi) + 2 (side of eta)
+    std::array<int, 4> cells;    ///< the index is (side of xi) + 2 (side of eta)
     int low, right, high, left;  ///< edges, in the sense of circulation
     double thickness_over_area;  ///< dt nu h/a_v of the step, h the mean of the cells around
   };
@@ -62,7 +62,7 @@ class ImplicitViscosity {
   Eigen::VectorXd thickness_, damped_thickness_, root_;  ///< an edge
   Eigen::VectorXd over_area_;                            ///< dt nu h/a (n_cells)
   Eigen::VectorXd diagonal_;                             ///< near that of the system (n_edges)
-  Eigen::VectorXd outflow_, momentum_, curl_;            ///< of a product
+  Eigen::VectorXd outflow_, momentum_, curl_;            ///< a product works in them
   Eigen::VectorXd right_side_, residual_, scaled_, direction_, product_;
 };
 

@@ -11,7 +11,7 @@ namespace lipofill::geometry {
 /// Distance from the skin to the bone.
 struct BoneDepth {
   Eigen::VectorXd depth;        ///< [m] along the inward normal, a value a node of the skin; filled and smoothed
-  double measured_share = 0.0;  ///< of the nodes, where the ray met bone
+  double measured_share = 0.0;  ///< the share of nodes whose ray met bone
 };
 
 /// Deeper bone than this belongs to another part of the head [m].

@@ -43,7 +43,7 @@ struct SquareSpec {
 
 /// A quadrilateral region of the outer skin of a scan.
 struct ScanRegionSpec {
-  SurfaceMesh scan;  ///< as read: cleaning is part of building
+  SurfaceMesh scan;  ///< is as it was read: cleaning is part of building
   Landmarks landmarks;
   std::optional<HeadAxes> axes;      ///< estimated from the landmarks when absent
   std::array<SkinPoint, 4> corners;  ///< (xi, eta) = (0,0), (1,0), (1,1), (0,1); no ChartPoint
@@ -58,7 +58,7 @@ struct FaceGeometrySpec {
   std::variant<SquareSpec, ScanRegionSpec> region;
   int n_xi = 0;
   int n_eta = 0;
-  std::vector<LayerGeometry> layers;  ///< from the skin inwards
+  std::vector<LayerGeometry> layers;  ///< they go from the skin inwards
 };
 
 /// A vertex of the scan that lies in the region and rides on the skin of the model: it moves by the
@@ -71,7 +71,7 @@ struct Rider {
 /// A region of skin, charted and extruded.
 struct FaceGeometry {
   LayeredGrid grid;
-  SurfaceMesh scan;           ///< as given, vertex for vertex, cleaned of nothing; empty for a square
+  SurfaceMesh scan;           ///< is as it was given, vertex for vertex; empty for a square
   std::vector<Rider> riders;  ///< ascending in vertex
   HeadAxes axes;
   Landmarks landmarks;

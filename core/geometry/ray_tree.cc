@@ -20,7 +20,7 @@ struct RayTree::Builder {
   struct Box {
     Eigen::Vector3d low;
     Eigen::Vector3d high;
-    int first = 0;   ///< of the triangles of a leaf
+    int first = 0;   ///< the triangles of a leaf begin here
     int count = 0;   ///< 0: not a leaf
     int second = 0;  ///< the other child; the one child follows its parent
   };

@@ -13,7 +13,7 @@ namespace lipofill::geometry {
 namespace {
 
 constexpr double kUnreached = std::numeric_limits<double>::infinity();
-constexpr double kSpare = 1.25;  // of the corners' own sum of distances; distances along edges are up to 1.2 too long
+constexpr double kSpare = 1.25;         // multiplies the corners' own sum; ways along edges are up to 1.2 too long
 constexpr double kSpareLength = 0.005;  // [m] a corner
 constexpr double kLargestFill = 0.015;  // [m] across
 constexpr int kMaxPatchVertices = 300'000;

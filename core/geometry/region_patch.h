@@ -15,7 +15,7 @@ namespace lipofill::geometry {
 struct RegionPatch {
   SurfaceMesh mesh;
   std::vector<int> whole_of_vertex;     ///< vertex of the cleaned scan, -1 for the middle of a filled hole
-  std::array<SurfacePoint, 4> corners;  ///< on `mesh`
+  std::array<SurfacePoint, 4> corners;  ///< they lie on `mesh`
   std::vector<std::string> remarks;
 };
 

@@ -9,7 +9,7 @@
 namespace lipofill::geometry {
 namespace {
 
-constexpr double kOnEdge = 1e-7;  // of a barycentric coordinate
+constexpr double kOnEdge = 1e-7;  // a barycentric coordinate below this is on the edge
 
 /// Asks for every so many points, which take some milliseconds, whether they are wanted.
 class Patience {

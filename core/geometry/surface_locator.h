@@ -10,7 +10,7 @@ namespace lipofill::geometry {
 struct SurfacePoint {
   int triangle = -1;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-  double distance = 0.0;                               ///< from the point asked about [m]
+  double distance = 0.0;                               ///< the point asked about is this far away [m]
 };
 
 /// Nearest points on a surface, through VTK. The surface must have a triangle. Of triangles at the

@@ -55,7 +55,7 @@ class HeldFactor {
   TissueSystem& system_;
   StepCost& cost_;
   coupling::CoupledFactor factor_;
-  Eigen::Matrix3Xd positions_;  ///< of the factor at hand
+  Eigen::Matrix3Xd positions_;  ///< the factor at hand was made there
   Eigen::VectorXd springs_;
   double dt_ = 0.0;  ///< [s]; 0: there is no factor that can be used
   coupling::Precision precision_ = coupling::Precision::kSingle;

@@ -32,7 +32,7 @@ struct TissueSetup {
   std::vector<coupling::WallNodes> walls;  ///< a film on tissue, in the order of the films
   std::vector<int> skin_nodes;             ///< (nodes_per_level)
   std::vector<LigamentLayout> ligaments;
-  std::string key;  ///< of the tissue's structure (shared_parts.h)
+  std::string key;  ///< names the tissue's structure (shared_parts.h)
 };
 
 /// Only for a model with layers. Field violations of the plan's ligaments.

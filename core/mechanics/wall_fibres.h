@@ -18,7 +18,7 @@ struct LigamentLayout {
   std::string name;
   int first_spring = 0;
   int n_springs = 0;
-  double breaking_force = 0.0;  ///< of each spring [N]; infinity: it holds
+  double breaking_force = 0.0;  ///< each spring breaks at it [N]; infinity: it holds
 };
 
 /// Springs across the films of a tissue: ligaments first, then the fibres of connective tissue.

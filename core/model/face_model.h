@@ -30,11 +30,11 @@ struct DownToBone {
 
 struct TissueLayerSpec {
   std::string name;
-  geometry::LayerGeometry geometry;  ///< in a built model, the thickness it has
+  geometry::LayerGeometry geometry;  ///< a built model has the thickness it came to
   solid::ElasticMaterial material;
   std::optional<anatomy::TissueKind> kind = std::nullopt;
   bool regional_thickness = false;  ///< published figures of the kind in some regions, the thickness outside
-  std::optional<DownToBone> down_to_bone = std::nullopt;  ///< in place of the thickness
+  std::optional<DownToBone> down_to_bone = std::nullopt;  ///< it takes the place of the thickness
 };
 
 /// All that a model is made from; lipofill.v1.ModelSpec in SI.
@@ -45,7 +45,7 @@ struct FaceModelSpec {
   std::vector<TissueLayerSpec> layers;
   Support rim;
   Support base;
-  std::optional<geometry::SurfaceMesh> bone;  ///< in the frame of the scan
+  std::optional<geometry::SurfaceMesh> bone;  ///< its points are in the frame of the scan
 };
 
 /// Thickness of a layer over the nodes of the chart [m].
@@ -59,7 +59,7 @@ struct ThicknessRange {
 struct BoneFinding {
   double measured_share = 0.0;  ///< where a ray met bone
   double limited_share = 0.0;   ///< where the layer ends above the bone, at its greatest thickness
-  ThicknessRange depth;         ///< from the skin
+  ThicknessRange depth;         ///< the depths count from the skin
 };
 
 struct SharedParts;
@@ -71,11 +71,11 @@ struct FaceModel {
   std::vector<TissueLayerSpec> layers;
   Support rim;
   Support base;
-  std::vector<ThicknessRange> thickness;  ///< of each layer
+  std::vector<ThicknessRange> thickness;  ///< there is a range for each layer
   std::optional<BoneFinding> bone;
   bool is_square = false;
   std::string content_hash;                                   ///< SHA-256 of everything a simulation depends on
-  std::shared_ptr<SharedParts> shared = make_shared_parts();  ///< of its simulations (shared_parts.h)
+  std::shared_ptr<SharedParts> shared = make_shared_parts();  ///< its simulations share them (shared_parts.h)
 };
 
 /// Builds the model. INVALID_ARGUMENT with field violations named as in lipofill.v1.ModelSpec,

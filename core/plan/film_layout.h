@@ -15,14 +15,14 @@ namespace lipofill::plan {
 struct FilmLayout {
   std::string name;
   film::FilmGrid grid;
-  std::vector<std::string> zone_names;  ///< by index in FilmGrid::zone_of_cell
+  std::vector<std::string> zone_names;  ///< FilmGrid::zone_of_cell has the index
   FilmWallKind wall = FilmWallKind::kTissue;
   double wall_stiffness = 0.0;  ///< [Pa/m]
   film::WallFriction wall_friction = film::WallFriction::kNoSlip;
-  int level = -1;  ///< of the tissue, kTissue only
+  int level = -1;  ///< the tissue opens at this level, kTissue only
   geometry::ScalarField rest_thickness;
   geometry::ScalarField initial_thickness;
-  film::WalledSlots walled_slots;  ///< on both sides of walls inside zones
+  film::WalledSlots walled_slots;  ///< they lie on both sides of walls inside zones
   ConnectiveTissueSpec connective_tissue;
 
   int cell_at(const geometry::ChartPoint& place) const;

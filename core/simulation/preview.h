@@ -11,7 +11,7 @@ namespace lipofill::simulation {
 
 /// The difference of a preview from the full result.
 struct PreviewDifference {
-  double max = 0.0;     ///< of the displacement of the skin, over its nodes [m]
+  double max = 0.0;     ///< skin displacements differ by this at most, over its nodes [m]
   double rms = 0.0;     ///< the same, root of the mean square [m]
   double volume = 0.0;  ///< swept by the skin: preview minus full [m3]
 };

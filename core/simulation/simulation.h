@@ -52,7 +52,7 @@ struct StepReport {
   double skin_max_displacement = 0.0;  ///< [m]
   double skin_speed = 0.0;             ///< [m/s]  largest over the nodes of the skin
   double skin_volume_change = 0.0;     ///< [m3]  swept by the skin
-  double min_scaled_jacobian = 1.0;    ///< of the deformed tissue
+  double min_scaled_jacobian = 1.0;    ///< the deformed tissue has it
   int film_iterations = 0;             ///< Picard iterations in this step
   int newton_iterations = 0;
   double void_volume = 0.0;       ///< gap that is neither fat nor closed, at the suction limit [m3]
@@ -61,13 +61,13 @@ struct StepReport {
   double error_estimate = 0.0;    ///< local error of the step on positions and thickness [m]
   double settling_error = 0.0;    ///< how far the skin has still to go, by the fall of its speed [m]; may be infinite
   double elastic_energy = 0.0;    ///< [J]
-  double kinetic_energy = 0.0;    ///< of the tissue [J]
+  double kinetic_energy = 0.0;    ///< the tissue has it [J]
   double injection_work = 0.0;    ///< since the start [J]
   double film_dissipation = 0.0;  ///< since the start [J]
   double ligament_tension = 0.0;  ///< sum over all ligaments [N]
   int broken_ligament_points = 0;
   int closed_cells = 0;                 ///< cells that fat has not entered
-  mechanics::StepCost cost;             ///< of the step, tries that were taken back included
+  mechanics::StepCost cost;             ///< the step took it, with tries that were taken back
   std::vector<double> probe_thickness;  ///< [m]
   std::vector<double> probe_pressure;   ///< [Pa]
 };

@@ -26,7 +26,7 @@ struct Simulation::Impl {
   plan::SimulationSpec spec;
   std::vector<plan::FilmLayout> films;
   FrameLayout frame_layout;
-  std::vector<Eigen::Matrix3Xd> rest_film_vertices;  ///< of each film's mid-surface [m] (3, n_vertices)
+  std::vector<Eigen::Matrix3Xd> rest_film_vertices;  ///< span each film's mid-surface [m] (3, n_vertices)
   std::vector<ProbePlace> probes;
   plan::InjectionSchedule schedule;
   std::unique_ptr<step::CoupledStep> stepper;

@@ -27,7 +27,7 @@ constexpr int kMostCheckpoints = 10'000;
 struct Ground {
   std::unique_ptr<simulation::Simulation> simulation;
   v1::SimulationSpec spec;
-  CheckpointRecord checkpoint;  ///< of step 0 and no command: the start
+  CheckpointRecord checkpoint;  ///< is the start where it has step 0 and no command
   std::string note;             ///< which checkpoints could not be used
 };
 

@@ -21,7 +21,7 @@ class CallGate;
 struct Call {
   std::string method;      ///< "/lipofill.v1.PatientService/GetPatient"
   std::string request_id;  ///< the client's x-request-id, or one that was made for it
-  std::string trace_id;    ///< of the client's W3C traceparent; empty without one
+  std::string trace_id;    ///< the client's W3C traceparent has it; empty without one
   std::string parent_id;   ///< the client's span, the same way
   Principal principal;     ///< who calls, once admitted
   /// The reason why the call is not to be carried out; whatever answers calls looks here first. A

@@ -17,7 +17,7 @@ enum class Effect {
 struct MethodRule {
   Effect effect = Effect::kNone;
   Role least = Role::kAdmin;
-  bool is_open = false;      ///< to everybody, also to those who do not say who they are
+  bool is_open = false;      ///< everybody may call it, also who does not say who they are
   bool is_frequent = false;  ///< so often that the audit log has only what is refused of it
 };
 

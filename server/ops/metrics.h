@@ -18,7 +18,7 @@ namespace lipofill::server {
 /// Duration of a step of a simulation [s] and the work of its solver.
 struct StepFigures {
   double wall_s = 0.0;
-  double cpu_s = 0.0;  ///< of the thread; what the phases leave of it is bookkeeping
+  double cpu_s = 0.0;  ///< the thread took it; what the phases leave of it is bookkeeping
   double element_cpu_s = 0.0;
   double factor_cpu_s = 0.0;
   double solve_cpu_s = 0.0;
@@ -83,7 +83,7 @@ class Metrics {
 
   prometheus::Counter& steps_;
   prometheus::Histogram& step_wall_;
-  std::array<prometheus::Histogram*, 6> step_phases_{};  ///< as in count_step
+  std::array<prometheus::Histogram*, 6> step_phases_{};  ///< they are in the order of count_step
   std::array<prometheus::Counter*, 3> iterations_{};
   prometheus::Counter& factorisations_;
   prometheus::Counter& tissue_solves_;

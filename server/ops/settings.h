@@ -22,9 +22,9 @@ struct Setting {
   std::string value_name;  ///< "N"; of a switch: empty
   std::string help;
   Target target;
-  double low = -std::numeric_limits<double>::infinity();  ///< of numbers
+  double low = -std::numeric_limits<double>::infinity();  ///< bounds a number from below
   double high = std::numeric_limits<double>::infinity();
-  std::vector<std::string> choices = {};  ///< of texts; empty: any
+  std::vector<std::string> choices = {};  ///< a text is one of these; empty: it may be any
 
   std::string environment_name() const;  ///< "LIPOFILLD_MAX_SIMULATIONS"
   std::string text() const;              ///< its value now, as a file would have it

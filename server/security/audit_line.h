@@ -21,8 +21,8 @@ struct AuditEntry {
 
 /// The end of a chain of lines: the next line carries on from it.
 struct AuditHead {
-  uint64_t number = 0;                      ///< of the last line
-  std::string hash = std::string(64, '0');  ///< of the last line
+  uint64_t number = 0;                      ///< the last line had it
+  std::string hash = std::string(64, '0');  ///< the last line had it
 };
 
 /// SHA-256 of a line without its end, in hex.

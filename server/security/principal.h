@@ -32,7 +32,7 @@ struct Principal {
   std::string subject = "local";
   Role role = Role::kAdmin;
   Scope scope;
-  std::optional<Clock::time_point> expires = {};  ///< of its token, with the clock's tolerance
+  std::optional<Clock::time_point> expires = {};  ///< the token ends then, the clock's tolerance included
 
   bool has_expired(Clock::time_point now = Clock::now()) const { return expires && now >= *expires; }
 };

@@ -12,8 +12,8 @@ namespace lipofill::server {
 struct TokenParts {
   nlohmann::json header;
   nlohmann::json claims;
-  std::string key_id;     ///< of the header; empty without one
-  std::string algorithm;  ///< of the header
+  std::string key_id;     ///< the header names it; empty without one
+  std::string algorithm;  ///< the header names it
 };
 
 /// Takes a token apart. UNAUTHENTICATED "TOKEN_MALFORMED" unless it has at most 8 KiB, three parts

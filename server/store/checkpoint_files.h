@@ -14,7 +14,7 @@ namespace lipofill::server {
 /// Content of a checkpoint's file: everything that a simulation needs to go on, besides its model.
 struct CheckpointContent {
   std::string simulation;    ///< id
-  uint64_t step = 0;         ///< of the state
+  uint64_t step = 0;         ///< the state is after this step
   std::string spec_message;  ///< the plan with the injections taken by then
   std::string snapshot;      ///< simulation::Simulation::snapshot()
 };
@@ -43,7 +43,7 @@ class CheckpointFiles {
 
   struct Written {
     uint64_t size_bytes = 0;
-    std::string sha256;  ///< of the file's body
+    std::string sha256;  ///< is computed from the file's body
   };
   /// Writes the file whole and on the medium, or not at all. RESOURCE_EXHAUSTED when there is no
   /// room or it is too large.

@@ -23,8 +23,8 @@ struct PatientRecord {
 struct ScanRecord {
   std::string patient;
   std::string id;
-  int format = 0;  ///< as in the wire schema
-  int unit = 0;    ///< as in the wire schema
+  int format = 0;  ///< has the number of the wire schema
+  int unit = 0;    ///< has the number of the wire schema
   uint64_t size_bytes = 0;
   std::string sha256;
   uint64_t received_bytes = 0;
@@ -98,8 +98,8 @@ struct CheckpointRecord {
   double time_s = 0.0;        ///< simulated
   double wall_s = 0.0;        ///< spent RUNNING until then
   uint64_t last_command = 0;  ///< number of the last command that is in the state; given by the store
-  uint64_t size_bytes = 0;    ///< of the file
-  std::string sha256;         ///< of the file's body
+  uint64_t size_bytes = 0;    ///< is that of the file
+  std::string sha256;         ///< is computed from the file's body
   std::string state_hash;
   int64_t create_time_us = 0;
 };
@@ -122,7 +122,7 @@ struct SeriesChunk {
 struct RequestKey {
   std::string method;
   std::string id;
-  std::string fingerprint;  ///< of the whole request: the same id with another request is a mistake of the caller
+  std::string fingerprint;  ///< tells the whole request: one id for two requests is the caller's mistake
   std::string tenant = kLocalTenant;
 };
 

@@ -44,7 +44,7 @@ class ResultFolder {
 
   std::filesystem::path path_;
   std::vector<Array> meshes_;
-  std::map<std::string, std::vector<std::pair<double, std::string>>> collections_;  // by stem: time and file
+  std::map<std::string, std::vector<std::pair<double, std::string>>> collections_;  // a stem has pairs of time and file
   std::optional<double> last_time_s_;
   int frames_ = 0;
 };

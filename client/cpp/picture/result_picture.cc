@@ -24,8 +24,8 @@ constexpr double kSide = 0.785;       // where the third column begins
 constexpr double kSideRight = 0.985;  // and where its figures end
 constexpr double kRow = 0.45;
 constexpr double kRowsBottom = 0.045;
-constexpr double kHeading = 0.032;  // of a row, above its panels
-constexpr double kLine = 0.027;     // from a line of text to the next
+constexpr double kHeading = 0.032;  // a row has this share above its panels
+constexpr double kLine = 0.027;     // a line of text is this far from the next
 
 /// The panel in a column and a row, both from the upper left.
 Area area_of(int column, int row) {

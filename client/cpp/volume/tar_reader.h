@@ -36,7 +36,7 @@ class TarReader {
     void operator()(gzFile_s* stream) const;
   };
   std::unique_ptr<gzFile_s, Close> stream_;
-  uint64_t position_ = 0;  // in the unpacked tar
+  uint64_t position_ = 0;  // counts in the unpacked tar
   uint64_t next_ = 0;      // where the next header is
   std::string file_;
 };

@@ -19,7 +19,7 @@ struct VolumeHeader {
   VolumeFormat format = VolumeFormat::kMetaImage;
   std::array<uint64_t, 3> size{};
   uint64_t bytes_per_voxel = 0;
-  int vtk_type = 0;         ///< of a voxel, VTK_SHORT and so on; not of NIfTI
+  int vtk_type = 0;         ///< a voxel is VTK_SHORT and so on; NIfTI does not say
   bool big_endian = false;  ///< the same
   bool compressed = false;
   std::filesystem::path data_file;  ///< may be the header's own file

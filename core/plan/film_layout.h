@@ -42,6 +42,6 @@ Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film:
 /// Flags of the level's nodes that are doubled: all quadrilaterals around the node lie in cells of
 /// one zone, on one side of its walls. The tissue stays bonded along the edges of zones and along
 /// walls.
-std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const FilmLayout& film);
+std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const FilmLayout& layout);
 
 }  // namespace lipofill::plan

@@ -21,7 +21,7 @@ struct MeasuredRoute {
   Samples total;
   int iterations = 0;
   bool is_complete = true;
-  double relative_difference = 0.0;  ///< of its answer from the reference; the worst of all runs
+  double relative_difference = 0.0;  ///< its answer differs from the reference so much in the worst run
 
   nlohmann::ordered_json to_json() const;
 };
@@ -69,7 +69,7 @@ class ScaleBench {
   LinearAnswer reference_;
   Samples element_work_;
   std::vector<MeasuredRoute> routes_;
-  double peak_mb_ = 0.0;  ///< of whole steps alone
+  double peak_mb_ = 0.0;  ///< whole steps alone came to it
 };
 
 }  // namespace lipofill::bench

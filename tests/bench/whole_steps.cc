@@ -35,7 +35,7 @@ absl::StatusOr<std::unique_ptr<WholeSteps>> WholeSteps::create(const JawAngle& j
   auto simulation = Simulation::create(jaw.model, jaw.spec);
   if (!simulation.ok()) return simulation.status();
   if (const absl::Status status = (*simulation)->restore(snapshot); !status.ok()) return status;
-  (*simulation)->advance_step();  // of the size of those before it
+  (*simulation)->advance_step();  // it is as long as those before it
   return std::unique_ptr<WholeSteps>(new WholeSteps(*std::move(simulation)));
 }
 

@@ -42,9 +42,9 @@ class WholeSteps {
 
 /// One run of a plan from pressing run to the settled shape.
 struct SettledRun {
-  Span stepping;      ///< from the first step to the last
+  Span stepping;      ///< it runs from the first step to the last
   Span creation;      ///< before the first step
-  StepCosts costs;    ///< of the same steps
+  StepCosts costs;    ///< the same steps took these
   Samples injecting;  ///< steps of the plan's size while fat flows in
   int steps = 0;
   double simulated_s = 0.0;

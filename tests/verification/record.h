@@ -16,7 +16,7 @@ enum class Bound {
 
 struct Figure {
   std::string quantity;  ///< for example "front after 10 s"
-  std::string unit;      ///< of both values; "1" for ratios
+  std::string unit;      ///< both values have it; "1" for ratios
   double expected = 0.0;
   double measured = 0.0;
   double tolerance = 0.0;
@@ -36,7 +36,7 @@ struct Series {
 /// Points measured beside a reference, for a plot on the page.
 struct Curve {
   std::string name;
-  std::string x_label;  ///< with its unit
+  std::string x_label;  ///< names the axis and its unit
   std::string y_label;
   std::vector<double> x;
   std::vector<double> measured;

@@ -12,7 +12,7 @@ struct MicroCase {
   JawAngle jaw;
   std::unique_ptr<StepParts> parts;
   LinearStep step;
-  std::unique_ptr<simulation::Simulation> simulation;  ///< at rest
+  std::unique_ptr<simulation::Simulation> simulation;  ///< it is at rest
 };
 
 /// The case of a scale, made when it is first asked for; the last one made is kept. Ends the

@@ -12,7 +12,7 @@ namespace lipofill::bench {
 
 /// From the file of a scan to the first frame of a simulation on it, and its first step.
 struct StartupTable {
-  int triangles = 0;  ///< of the scan as it is in the file
+  int triangles = 0;  ///< the scan's file has so many
   std::vector<Phase> phases;
   std::string state_hash;  ///< after the first step
 

@@ -13,10 +13,10 @@ struct ViewersRow {
   int viewers = 0;
   double steps = 0.0;
   double wall_s = 0.0;
-  double worker_cpu_s = 0.0;     ///< of the thread that steps
-  double transport_cpu_s = 0.0;  ///< of the daemon's other threads: encoding and sending
+  double worker_cpu_s = 0.0;     ///< the thread that steps took it
+  double transport_cpu_s = 0.0;  ///< the daemon's other threads took it to encode and send
   double frames = 0.0;           ///< seen by a viewer, mean
-  double sent_mb = 0.0;          ///< to all viewers
+  double sent_mb = 0.0;          ///< all viewers together were sent it
 };
 
 /// Runs the plan for a simulated time [s] with each number of viewers in turn, `rounds` times over,

@@ -82,7 +82,7 @@ class Planner {
   int simulations_ = 0;
 
   mutable std::mutex mutex_;
-  std::string name_;  ///< of the simulation at hand
+  std::string name_;  ///< names the simulation at hand
   bool adaptive_ = false;
   bool ended_ = false;
   bool paused_ = false;

@@ -47,7 +47,7 @@ struct Case {
   Eigen::MatrixXd compliance() const { return b_dense * s_dense.llt().solve(b_dense.transpose()); }
 };
 
-constexpr double kBound[] = {2e-5, 1e-12};  ///< of float32 and float64
+constexpr double kBound[] = {2e-5, 1e-12};  ///< float32 and float64 keep to these
 const Precision kPrecisions[] = {Precision::kSingle, Precision::kDouble};
 
 double bound_of(Precision precision) {

@@ -175,7 +175,7 @@ TEST(ElementAssembler, TellsWhatIsSqueezedAndFolded) {
   const SystemPattern pattern(row.mesh.n_nodes(), row.mesh.hexahedra,
                               std::vector<std::array<bool, 3>>(row.mesh.n_nodes(), {false, false, false}));
   const ElementAssembler assembler(row.mesh, {{1e5, 0.45, 1000.0}}, pattern);
-  const int node = row.mesh.hexahedra[2][6];  // of hexahedra 2 and 3
+  const int node = row.mesh.hexahedra[2][6];  // hexahedra 2 and 3 share it
   for (const double share : {0.0, 0.8, 1.2}) {
     Eigen::Matrix3Xd x = row.mesh.rest_positions;
     x(2, node) -= share * 0.002;

@@ -14,7 +14,7 @@ bool has_calculix();
 /// What CalculiX makes of a deck.
 struct CalculixResult {
   Eigen::Matrix3Xd skin;  ///< displacement of the skin's nodes under the whole load [m], in their order
-  double seconds = 0.0;   ///< on one core
+  double seconds = 0.0;   ///< it took so long on one core
 };
 
 /// Has ccx solve the deck in a folder of its own. INTERNAL, with the end of what it said, when it

@@ -33,7 +33,7 @@ std::shared_ptr<const model::FaceModel> make_plate(double thickness, int n) {
 
 struct Inflated {
   double pressure = 0.0;    ///< [Pa]
-  double deflection = 0.0;  ///< of the middle [m]
+  double deflection = 0.0;  ///< the middle moves this far [m]
 };
 
 /// At rest, with `volume` injected below a plate of n x n elements.

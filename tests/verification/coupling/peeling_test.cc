@@ -114,12 +114,12 @@ constexpr double kPrewetted = 0.0033e-3;
 /// Height of the blister at the end over the pre-wetted thickness: far above 1 for the similarity
 /// to hold, and a tenth of the plate's thickness, for bending alone.
 constexpr double kHeight = 30.0;
-constexpr double kRadius = 0.06;  ///< at the end [m]
+constexpr double kRadius = 0.06;  ///< the front is there at the end [m]
 const double kBending = kYoungsModulus * std::pow(kThickness, 3) / (12.0 * (1.0 - kNu * kNu));
 
 /// R = (prefactor . D h0^(1/2) rate^(5/2)/mu)^power t^(7/2 power)
 struct FrontLaw {
-  double constant = 0.0;  ///< of the bracket
+  double constant = 0.0;  ///< the bracket of the law has it
   double power = 0.0;
   double rate = 0.0;  ///< [m3/s], or [m2/s] to one side
   double radius(double t) const {

@@ -44,7 +44,7 @@ ScalarField sample_profile(double side, double t) {
 
 /// The film along one side of the quarter at the end.
 struct Profile {
-  double width = 0.0;     ///< of a cell [m]
+  double width = 0.0;     ///< a cell is so wide [m]
   std::vector<double> h;  ///< [m]
 
   double r(int i) const { return width * std::hypot(i + 0.5, 0.5); }

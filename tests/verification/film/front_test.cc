@@ -24,7 +24,7 @@ model::TissueLayerSpec make_layer(const std::string& name, double thickness, dou
 
 struct Front {
   double place = 0.0;            ///< where the film is 0.5 mm thick [m]
-  double thickness = 0.0;        ///< at the source [m]
+  double thickness = 0.0;        ///< the film has it at the source [m]
   double lowest_pressure = 0.0;  ///< ever [Pa]
   double void_volume = 0.0;      ///< largest [m3]
 };

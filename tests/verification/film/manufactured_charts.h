@@ -26,7 +26,7 @@ using FluxDensity = std::function<Eigen::Vector2d(double xi, double eta)>;
 /// product of cosines does not go through them.
 struct Chart {
   std::string name;
-  std::function<Eigen::Vector2d(double xi, double eta)> plane;  ///< to the surface's own coordinates x, y
+  std::function<Eigen::Vector2d(double xi, double eta)> plane;  ///< maps to the surface's own coordinates x, y
   std::function<Eigen::Vector3d(double x, double y)> surface;
   bool natural_walls = false;
 

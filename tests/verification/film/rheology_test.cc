@@ -98,7 +98,7 @@ TEST(YieldStressDeposit, StopsWhereTheWallStressIsTheYieldStress) {
   const double stiffness = 1e6;
   const double yield_stress = 20.0;
   const double volume_per_width = 2e-3 * 0.5 * length;
-  const double fall = 4.0 * yield_stress / stiffness;  // of h^2 a metre
+  const double fall = 4.0 * yield_stress / stiffness;  // h^2 falls by this a metre
   // Area of sqrt(fall (R - x)) over 0 < x < R is 2/3 sqrt(fall) R^(3/2).
   const double front = std::pow(1.5 * volume_per_width / std::sqrt(fall), 2.0 / 3.0);
   ASSERT_LT(front, length);

@@ -13,7 +13,7 @@ using geometry::ChartPoint;
 using geometry::ScalarField;
 using plan::FilmWallKind;
 
-constexpr double kStiffness = 1e6;  // of the Winkler wall [Pa/m]
+constexpr double kStiffness = 1e6;  // the Winkler wall has it [Pa/m]
 
 // Two chambers on a Winkler wall with a leaky wall between them: the pressure difference falls as
 // exp(-t/tau), 1/tau = k L l (1/A1 + 1/A2), L the leakage and l the wall's length.

@@ -25,7 +25,7 @@ constexpr double kPressure = 10.0;
 
 struct Plate {
   int n = 20;
-  double side = 0.1;  ///< of the square; the radius of the circle
+  double side = 0.1;  ///< the square has this side, the circle this radius
   double thickness = 0.002;
   double nu = 0.45;
   double distortion = 0.0;
@@ -196,7 +196,7 @@ HexMesh make_quarter_disc(const Plate& plate) {
 }
 
 struct DiscResult {
-  double deflection = 0.0;  ///< at the centre [m]
+  double deflection = 0.0;  ///< the centre moves this far [m]
   double volume = 0.0;      ///< swept by the whole disc [m3]
 };
 

@@ -24,7 +24,7 @@ constexpr int kElements = 20;
 
 struct Tip {
   double deflection = 0.0;  ///< w/L
-  double shortening = 0.0;  ///< of the chord, over L
+  double shortening = 0.0;  ///< the chord is shorter by this share of L
 };
 
 Tip bend(double load) {

@@ -4,7 +4,7 @@
 
 namespace lipofill::film {
 
-/// Of a film's walls: none is the paper's own model, for Newtonian fat only.
+/// The friction of a film's walls; none is the paper's own model, for Newtonian fat only.
 enum class WallFriction { kNoSlip, kNone };
 
 /// Injected fat between two walls: a Herschel-Bulkley fluid, tau = tau_y + K rate^n (Newtonian by

@@ -23,7 +23,7 @@ struct HeldMesh {
   std::vector<int> skin_nodes;             ///< (nodes_per_level)
 };
 
-/// Only for a model with layers.
+/// Opens the films in a model's mesh and holds it. The model must have layers.
 HeldMesh hold_mesh(const model::FaceModel& model, const std::vector<plan::FilmLayout>& films);
 
 /// The tissue of a held mesh.
@@ -35,7 +35,7 @@ struct TissueSetup {
   std::string key;  ///< names the tissue's structure (shared_parts.h)
 };
 
-/// Only for a model with layers. Field violations of the plan's ligaments.
+/// Makes the tissue of a model, which must have layers. Field violations of the plan's ligaments.
 absl::StatusOr<TissueSetup> set_up_tissue(const model::FaceModel& model, const std::vector<plan::FilmLayout>& films,
                                           const plan::SimulationSpec& spec);
 

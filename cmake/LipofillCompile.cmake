@@ -1,9 +1,14 @@
 # Warnings, floating-point rules and the compiler cache, for all of our own targets.
 
+# Objects of one checkout serve another: the compiler cache sees paths relative to the checkout.
+# Without its leave to be sloppy about these two it would not cache what is compiled with
+# precompiled headers.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
-  set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  set(launcher
+    env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
+  set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
 endif()
 
 if(NOT CMAKE_BUILD_TYPE)
@@ -41,14 +46,18 @@ function(lipofill_library name)
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC ${ARG_DEPENDS} PRIVATE lipofill_compile)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  lipofill_use_precompiled(${name})
 endfunction()
 
 # One test program from the sources named, each of its cases a ctest with the label.
-#   lipofill_test(NAME LABEL unit SOURCES a_test.cc DEPENDS targets [TIMEOUT seconds])
+#   lipofill_test(NAME LABEL unit SOURCES a_test.cc DEPENDS targets [TIMEOUT seconds] [RANDOM RapidCheck's parameters])
 function(lipofill_test name)
-  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT;RANDOM" "SOURCES;DEPENDS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
+  endif()
+  if(ARG_RANDOM)
+    set(environment ENVIRONMENT "RC_PARAMS=${ARG_RANDOM}")
   endif()
   foreach(source ${ARG_SOURCES})
     set_property(GLOBAL APPEND PROPERTY LIPOFILL_TEST_SOURCES ${CMAKE_CURRENT_SOURCE_DIR}/${source})
@@ -56,9 +65,10 @@ function(lipofill_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_compile_definitions(${name} PRIVATE LIPOFILL_SHARED_DATA="${LIPOFILL_SHARED_DATA}")
   target_link_libraries(${name} PRIVATE ${ARG_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main lipofill_compile)
+  lipofill_use_precompiled(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
   gtest_discover_tests(${name} TEST_PREFIX ${ARG_LABEL}. DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT})
+    PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT} ${environment})
   lipofill_tests_of(${ARG_LABEL} ${name})
 endfunction()
 

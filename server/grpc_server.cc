@@ -94,7 +94,7 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<
   // in every lock.
   absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
   grpc::EnableDefaultHealthCheckService(true);
-  // The library is named here so that the linker keeps it.
+  // The library is named here so that the linker takes it in.
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
   std::unique_ptr<GrpcServer> self(new GrpcServer(guard, backend));
   grpc::ServerBuilder builder;

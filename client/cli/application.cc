@@ -46,6 +46,20 @@ CLI::App* add_local_command(CLI::App& parent, Application& application, const st
   return command;
 }
 
+void add_connection_options(CLI::App& command, Application& application) {
+  command
+      .add_option("--server", application.server, "address of the daemon; default $LIPOFILL_SERVER or 127.0.0.1:50061")
+      ->type_name("HOST:PORT");
+  const auto add_file = [&](const char* flag, std::string& file, const char* help) {
+    command.add_option(flag, file, help)->type_name("PATH");
+  };
+  CredentialFiles& files = application.credential_files;
+  add_file("--token-file", files.token, "file with the token that says who calls; default $LIPOFILL_TOKEN_FILE");
+  add_file("--tls-ca", files.tls_ca, "authorities of the daemon's certificate, for TLS; default $LIPOFILL_TLS_CA");
+  add_file("--tls-cert", files.tls_cert, "client certificate; default $LIPOFILL_TLS_CERT");
+  add_file("--tls-key", files.tls_key, "its private key; default $LIPOFILL_TLS_KEY");
+}
+
 CLI::App* add_command(CLI::App& parent, Application& application, const std::string& name,
                       const std::string& description, const std::string& examples, Action action) {
   CLI::App* command = add_local_command(parent, application, name, description, examples,
@@ -53,17 +67,7 @@ CLI::App* add_command(CLI::App& parent, Application& application, const std::str
                                           if (auto read = application.read_credentials(); !read.ok()) return read;
                                           return action();
                                         });
-  command
-      ->add_option("--server", application.server, "address of the daemon; default $LIPOFILL_SERVER or 127.0.0.1:50061")
-      ->type_name("HOST:PORT");
-  const auto add_file = [&](const char* flag, std::string& file, const char* help) {
-    command->add_option(flag, file, help)->type_name("PATH");
-  };
-  CredentialFiles& files = application.credential_files;
-  add_file("--token-file", files.token, "file with the token that says who calls; default $LIPOFILL_TOKEN_FILE");
-  add_file("--tls-ca", files.tls_ca, "authorities of the daemon's certificate, for TLS; default $LIPOFILL_TLS_CA");
-  add_file("--tls-cert", files.tls_cert, "client certificate; default $LIPOFILL_TLS_CERT");
-  add_file("--tls-key", files.tls_key, "its private key; default $LIPOFILL_TLS_KEY");
+  add_connection_options(*command, application);
   return command;
 }
 

@@ -97,6 +97,21 @@ std::string describe(const v1::Evaluation& evaluation) {
                       kNotAMedicalDevice, "\n");
 }
 
+std::string describe(const v1::CheckPlanResponse& check) {
+  std::string text = check.violations().empty() ? "The daemon takes this plan.\n" : "The daemon refuses this plan:\n";
+  const auto add = [&text](const v1::PlanFinding& finding) {
+    absl::StrAppend(&text, "  ", finding.field(), " ", finding.description(), "\n");
+  };
+  for (const v1::PlanFinding& violation : check.violations()) add(violation);
+  if (!check.remarks().empty()) text += "Worth knowing:\n";
+  for (const v1::PlanFinding& remark : check.remarks()) add(remark);
+  for (const v1::PlacedZone& zone : check.zones()) {
+    absl::StrAppendFormat(&text, "  zone %-24s %7.2f cm2 in %d cells of film %s\n", zone.name(), zone.area_cm2(),
+                          zone.film_cells(), zone.film());
+  }
+  return text;
+}
+
 std::string list_line(const v1::Patient& patient) {
   return absl::StrFormat("%-40s %s\n", patient.name(), patient.display_name());
 }

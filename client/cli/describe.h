@@ -17,6 +17,7 @@ std::string describe(const v1::Model& model);
 std::string layers_text(const v1::ModelReport& report);
 std::string describe(const v1::Operation& operation);
 std::string describe(const v1::Evaluation& evaluation);
+std::string describe(const v1::CheckPlanResponse& check);
 std::string list_line(const v1::Patient& patient);
 std::string list_line(const v1::Scan& scan);
 std::string list_line(const v1::Model& model);

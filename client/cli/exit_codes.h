@@ -4,7 +4,7 @@
 
 namespace lipofill::client {
 
-/// Exit codes for the shell; documented in `lipofill --help` and kept stable.
+/// Exit codes for the shell; documented in `lipofill --help`, and stable.
 enum class ExitCode {
   kOk = 0,
   kGoalNotReached = 1,

@@ -35,6 +35,7 @@ absl::StatusOr<v1::ModelSpec> model_of_plan(const Connection& connection, const 
   if (!plan.ok()) return plan.status();
   if (auto status = load_plan_landmarks(&*plan); !status.ok()) return status;
   if (auto status = check_bone_file(*plan); !status.ok()) return status;
+  take_region_from_zones(&plan->plan);
   v1::ModelSpec spec = plan->plan.model();
   if (!options.scan.empty()) {
     spec.mutable_scan_region()->set_scan(options.scan);

@@ -5,10 +5,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/application.h"
+#include "client/cli/describe.h"
 #include "client/cpp/errors.h"
 #include "client/cpp/landmarks_file.h"
 #include "client/cpp/plan_file.h"
 #include "client/cpp/scan_upload.h"
+#include "lipofill/v1/simulation_service.grpc.pb.h"
 
 namespace lipofill::client {
 namespace {
@@ -27,25 +29,42 @@ absl::Status check_files(PlanFile* plan) {
   return load_plan_landmarks(plan);
 }
 
-absl::StatusOr<ExitCode> check(const Application& application, const std::string& file) {
-  auto plan = load_plan(file);
-  if (!plan.ok()) return plan.status();
-  if (auto status = check_files(&*plan); !status.ok()) return status;
-  const auto& simulation = plan->plan.simulation();
+ExitCode tell_of_files(const Application& application, const std::string& file, const v1::Plan& plan) {
+  const v1::SimulationSpec& simulation = plan.simulation();
   if (application.json) {
-    std::cout << nlohmann::ordered_json{{"plan", plan->plan.name()},
-                                        {"layers", plan->plan.model().layers_size()},
+    std::cout << nlohmann::ordered_json{{"plan", plan.name()},
+                                        {"layers", plan.model().layers_size()},
                                         {"films", simulation.films_size()},
                                         {"injections", simulation.injections_size()},
-                                        {"landmarks", plan->plan.model().scan_region().landmarks_mm().size()}}
+                                        {"landmarks", plan.model().scan_region().landmarks_mm().size()}}
                      .dump(2)
               << "\n";
   } else {
-    std::cout << absl::StrCat(file, ": a plan with ", plan->plan.model().layers_size(), " layers, ",
-                              simulation.films_size(), " films and ", simulation.injections_size(),
-                              " injections; values are checked by the daemon when it runs\n");
+    std::cout << absl::StrCat(file, ": a plan with ", plan.model().layers_size(), " layers, ", simulation.films_size(),
+                              " films and ", simulation.injections_size(),
+                              " injections; values are checked by the daemon, with --model or when it runs\n");
   }
   return ExitCode::kOk;
+}
+
+/// Asks the daemon what it has to say of the plan on a model; nothing is made.
+absl::StatusOr<ExitCode> check_on_model(Application& application, const v1::Plan& plan, const std::string& model) {
+  if (auto read = application.read_credentials(); !read.ok()) return read;
+  v1::CheckPlanRequest request;
+  *request.mutable_spec() = plan.simulation();
+  request.mutable_spec()->set_model(model);
+  const auto found = application.connect().call<v1::SimulationService>(&v1::SimulationService::Stub::CheckPlan, request,
+                                                                       Connection::kCreationTimeout);
+  if (!found.ok()) return found.status();
+  application.answer(*found, describe(*found));
+  return found->violations().empty() ? ExitCode::kOk : ExitCode::kBadInput;
+}
+
+absl::StatusOr<ExitCode> check(Application& application, const std::string& file, const std::string& model) {
+  auto plan = load_plan(file);
+  if (!plan.ok()) return plan.status();
+  if (auto status = check_files(&*plan); !status.ok()) return status;
+  return model.empty() ? tell_of_files(application, file, plan->plan) : check_on_model(application, plan->plan, model);
 }
 
 }  // namespace
@@ -53,11 +72,17 @@ absl::StatusOr<ExitCode> check(const Application& application, const std::string
 void add_plan_commands(CLI::App& root, Application& application) {
   CLI::App* group = add_group(root, "plan", "Plan files");
   const auto file = std::make_shared<std::string>();
-  add_local_command(
-      *group, application, "check", "Check a plan's JSON, its fields and the files it names, without a daemon",
-      "  lipofill plan check jaw_angle.json\n", [&application, file] { return check(application, *file); })
-      ->add_option("plan", *file, "PLAN.json")
-      ->required();
+  const auto model = std::make_shared<std::string>();
+  CLI::App* command = add_local_command(
+      *group, application, "check",
+      "Check a plan's JSON, its fields and the files it names, without a daemon. With --model also what the daemon has "
+      "against it on that model, where its zones are, and what is worth knowing; no simulation is made",
+      "  lipofill plan check jaw_angle.json\n"
+      "  lipofill plan check jaw_angle.json --model patients/case-7/models/abc\n",
+      [&application, file, model] { return check(application, *file, *model); });
+  command->add_option("plan", *file, "PLAN.json")->required();
+  command->add_option("--model", *model, "patients/ID/models/ID");
+  add_connection_options(*command, application);
 }
 
 }  // namespace lipofill::client

@@ -19,7 +19,7 @@ constexpr char kDescription[] =
     "Draw a result on one sheet, a PNG: the face before and after, the displacement of the skin in mm, and the "
     "pressure "
     "of the fat in bands of mmHg (below 9, 9 to 15, 15 to 30, above 30; meant for settled fat), with the figures of "
-    "every zone. Colours keep their order without colour vision. Works without a screen, through xvfb-run.";
+    "every zone. Colours stay in order without colour vision. Works without a screen, through xvfb-run.";
 
 constexpr char kExamples[] =
     "  lipofill render result                                  writes result/picture.png\n"
@@ -48,6 +48,7 @@ absl::Status draw_here(const Options& options) {
   }
   request.caption = kNotAMedicalDevice;
   request.figures = figures_of_folder(options.result);
+  request.remarks = remarks_of_folder(options.result);
   request.mesh = last_frame_file(options.result, "scan");
   if (request.mesh.empty()) request.mesh = last_frame_file(options.result, "skin");
   if (request.mesh.empty())

@@ -52,4 +52,16 @@ std::vector<std::pair<std::string, std::string>> figures_of_folder(const std::fi
   return figures;
 }
 
+std::vector<std::string> remarks_of_folder(const std::filesystem::path& folder) {
+  const auto summary = read_json_file(folder / "summary.json");
+  if (!summary.ok() || !summary->is_object()) return {};
+  const auto found = summary->find("remarks");
+  if (found == summary->end() || !found->is_array()) return {};
+  std::vector<std::string> remarks;
+  for (const nlohmann::json& remark : *found) {
+    if (remark.is_string()) remarks.push_back(remark.get<std::string>());
+  }
+  return remarks;
+}
+
 }  // namespace lipofill::client

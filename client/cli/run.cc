@@ -77,6 +77,7 @@ absl::Status Run::read_plan() {
   if (plan_.plan.name().empty()) plan_.plan.set_name(plan_.path.stem().string());
   if (auto status = load_plan_landmarks(&plan_); !status.ok()) return status;
   if (auto status = check_bone_file(plan_); !status.ok()) return status;
+  take_region_from_zones(&plan_.plan);
   model_spec_ = plan_.plan.model();
   record_.plan = plan_.plan.name();
   record_.up = up_of(model_spec_.scan_region());

@@ -26,7 +26,7 @@ constexpr char kExtractDescription[] =
     "without qform and sform stays in its own axes, which the answer says. Axes for a landmarks file in LPS: left "
     "[1,0,0], "
     "up [0,0,1], forward [0,-1,0].\n"
-    "In a head CT the skin at -300 HU opens into the airways and sinuses; the largest connected piece, which is kept, "
+    "In a head CT the skin at -300 HU opens into the airways and sinuses; the largest connected piece, which is taken, "
     "has their "
     "walls too. The model builder takes what is seen from outside.\n"
     "The bone is extracted the same way, at +250 HU, with --all: jaw and skull are separate pieces. As a plan's bone "
@@ -94,10 +94,10 @@ void add_volume_commands(CLI::App& scan, Application& application) {
                    "in the volume's values; -300 (the default) is the skin in HU, 250 the bone")
       ->capture_default_str();
   command->add_flag("--all", options->extraction.all_components,
-                    "keep every piece, not only the largest connected one");
+                    "take every piece, not only the largest connected one");
   command
       ->add_option("--smooth", options->extraction.smoothing_iterations,
-                   "iterations of windowed-sinc smoothing; keeps the volume")
+                   "iterations of windowed-sinc smoothing; the volume stays as it is")
       ->check(CLI::Range(0, 1000));
   command->add_option("--triangles", options->extraction.target_triangles, "thin out to about as many triangles")
       ->check(CLI::Range(uint64_t{100}, uint64_t{100'000'000}));

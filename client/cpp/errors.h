@@ -27,7 +27,7 @@ struct ErrorDetails {
   std::vector<FieldViolation> violations;
 };
 
-/// A wire status as a status of this library, its details kept in a payload; OK stays OK.
+/// A wire status as a status of this library, its details in a payload; OK stays OK.
 /// Checked by tests/unit/client/errors_test.cc.
 absl::Status status_of(const google::rpc::Status& wire);
 

@@ -1,5 +1,6 @@
 #include "client/cpp/plan_file.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "absl/strings/ascii.h"
@@ -53,6 +54,24 @@ absl::Status load_plan_landmarks(PlanFile* plan) {
   if (!landmarks.ok()) return landmarks.status();
   set_landmarks(*landmarks, plan->plan.mutable_model()->mutable_scan_region());
   return absl::OkStatus();
+}
+
+void take_region_from_zones(v1::Plan* plan) {
+  if (!plan->model().has_scan_region()) return;
+  v1::ScanRegion& region = *plan->mutable_model()->mutable_scan_region();
+  if (region.corners_size() > 0 || region.around().regions_size() > 0 || region.around().discs_size() > 0) return;
+  for (const v1::Film& film : plan->simulation().films()) {
+    for (const v1::Zone& zone : film.zones()) {
+      if (zone.has_region()) {
+        auto& names = *region.mutable_around()->mutable_regions();
+        if (std::find(names.begin(), names.end(), zone.region()) == names.end()) names.Add()->assign(zone.region());
+      } else if (zone.has_disc() && !zone.disc().centre().has_chart()) {
+        v1::SkinDisc& disc = *region.mutable_around()->add_discs();
+        *disc.mutable_centre() = zone.disc().centre();
+        if (zone.disc().has_radius_mm()) disc.set_radius_mm(zone.disc().radius_mm());
+      }
+    }
+  }
 }
 
 }  // namespace lipofill::client

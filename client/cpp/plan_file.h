@@ -35,4 +35,9 @@ std::string display_name_of(const std::string& plan_name);
 /// one.
 absl::Status load_plan_landmarks(PlanFile* plan);
 
+/// Lets the region of a scan follow from the zones, where the plan gives it neither corners nor
+/// what it goes around: the named regions and the discs of all films, each once. Boxes and painted
+/// zones lie on a chart that is not there yet. Does nothing where no zone tells.
+void take_region_from_zones(v1::Plan* plan);
+
 }  // namespace lipofill::client

@@ -1,59 +1,13 @@
 #include "client/cpp/result_text.h"
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cpp/message_figures.h"
 
 namespace lipofill::client {
 namespace {
-
-std::string number(double value) {
-  char text[32];
-  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
-  return error == std::errc() ? std::string(text, end) : "nan";
-}
-
-std::string series_header(const v1::SimulationSpec& spec) {
-  std::string header =
-      "step,time_s,step_ms,injected_ml,film_volume_ml,gap_volume_ml,max_pressure_pa,min_pressure_pa,max_thickness_mm,"
-      "skin_max_displacement_mm,skin_speed_mm_per_s";
-  for (const v1::Probe& probe : spec.probes()) {
-    absl::StrAppend(&header, ",probe_", probe.name(), "_thickness_mm,probe_", probe.name(), "_pressure_pa");
-  }
-  return header +
-         ",wall_ms,rejected_steps,error_estimate_mm,void_volume_ml,elastic_energy_mj,injection_work_mj,"
-         "film_dissipation_mj,ligament_tension_n,broken_ligament_points,closed_cells,cpu_ms,element_cpu_ms,"
-         "factor_cpu_ms,solve_cpu_ms,film_cpu_ms,coupling_cpu_ms,factorisations,tissue_solves,film_iterations,"
-         "newton_iterations,iterative_iterations,fallbacks\n";
-}
-
-void append_cost(std::string& csv, const v1::ComputingCost& cost) {
-  for (double value : {cost.cpu_ms(), cost.element_cpu_ms(), cost.factor_cpu_ms(), cost.solve_cpu_ms(),
-                       cost.film_cpu_ms(), cost.coupling_cpu_ms()}) {
-    absl::StrAppend(&csv, ",", number(value));
-  }
-  for (uint64_t count : {cost.factorisations(), cost.tissue_solves(), cost.film_iterations(), cost.newton_iterations(),
-                         cost.iterative_iterations(), cost.fallbacks()}) {
-    absl::StrAppend(&csv, ",", count);
-  }
-}
-
-nlohmann::ordered_json cost_json(const v1::ComputingCost& cost) {
-  return {{"cpu_ms", cost.cpu_ms()},
-          {"element_cpu_ms", cost.element_cpu_ms()},
-          {"factor_cpu_ms", cost.factor_cpu_ms()},
-          {"solve_cpu_ms", cost.solve_cpu_ms()},
-          {"film_cpu_ms", cost.film_cpu_ms()},
-          {"coupling_cpu_ms", cost.coupling_cpu_ms()},
-          {"factorisations", cost.factorisations()},
-          {"tissue_solves", cost.tissue_solves()},
-          {"film_iterations", cost.film_iterations()},
-          {"newton_iterations", cost.newton_iterations()},
-          {"iterative_iterations", cost.iterative_iterations()},
-          {"fallbacks", cost.fallbacks()}};
-}
 
 std::string cost_text(const v1::ComputingCost& cost) {
   return absl::StrFormat(
@@ -65,25 +19,6 @@ std::string cost_text(const v1::ComputingCost& cost) {
 
 std::string preview_state_name(const v1::PreviewSummary& preview) {
   return v1::PreviewSummary::State_Name(preview.state());
-}
-
-/// Returns null when the plan asks for no preview; the differences are null until they are known.
-nlohmann::ordered_json preview_json(const v1::Summary& summary) {
-  if (!summary.has_preview()) return nullptr;
-  const v1::PreviewSummary& preview = summary.preview();
-  const auto known = [](bool has, double value) { return has ? nlohmann::ordered_json(value) : nullptr; };
-  return {{"state", preview_state_name(preview)},
-          {"reason", preview.reason()},
-          {"wall_s", preview.wall_s()},
-          {"steps", preview.steps()},
-          {"time_s", preview.time_s()},
-          {"hexahedra", preview.hexahedra()},
-          {"film_cells", preview.film_cells()},
-          {"skin_max_displacement_mm", preview.skin_max_displacement_mm()},
-          {"skin_volume_change_ml", preview.skin_volume_change_ml()},
-          {"difference_max_mm", known(preview.has_difference_max_mm(), preview.difference_max_mm())},
-          {"difference_rms_mm", known(preview.has_difference_rms_mm(), preview.difference_rms_mm())},
-          {"difference_volume_ml", known(preview.has_difference_volume_ml(), preview.difference_volume_ml())}};
 }
 
 }  // namespace
@@ -102,63 +37,9 @@ std::string preview_text(const v1::PreviewSummary& preview) {
 }
 
 std::string summary_json(const std::string& plan, const v1::Simulation& simulation) {
-  const v1::Summary& summary = simulation.summary();
-  nlohmann::ordered_json zones = nlohmann::ordered_json::array();
-  for (const v1::ZoneSummary& zone : summary.zones()) {
-    zones.push_back({{"name", zone.name()},
-                     {"volume_ml", zone.volume_ml()},
-                     {"mean_pressure_pa", zone.mean_pressure_pa()},
-                     {"max_thickness_mm", zone.max_thickness_mm()}});
-  }
-  nlohmann::ordered_json ligaments = nlohmann::ordered_json::array();
-  for (const v1::LigamentSummary& ligament : summary.ligaments()) {
-    ligaments.push_back({{"name", ligament.name()},
-                         {"tension_n", ligament.tension_n()},
-                         {"largest_length_mm", ligament.largest_length_mm()},
-                         {"points", ligament.points()},
-                         {"broken_points", ligament.broken_points()}});
-  }
-  nlohmann::ordered_json settling_error;  // null while the skin's speed rises
-  if (summary.has_settling_error_mm()) settling_error = summary.settling_error_mm();
-  const nlohmann::ordered_json document = {
-      {"plan", plan},
-      {"state", state_name(simulation.state())},
-      {"reason", simulation.reason()},
-      {"steps", summary.steps()},
-      {"time_s", summary.time_s()},
-      {"wall_s", summary.wall_s()},
-      {"step_ms_median", summary.step_ms_median()},
-      {"hexahedra", summary.hexahedra()},
-      {"film_cells", summary.film_cells()},
-      {"dofs", summary.dofs()},
-      {"injected_ml", summary.injected_ml()},
-      {"film_volume_ml", summary.film_volume_ml()},
-      {"gap_volume_ml", summary.gap_volume_ml()},
-      {"film_volume_relative_error", summary.film_volume_relative_error()},
-      {"gap_volume_relative_error", summary.gap_volume_relative_error()},
-      {"max_pressure_pa", summary.max_pressure_pa()},
-      {"min_pressure_pa", summary.min_pressure_pa()},
-      {"mean_pressure_pa", summary.mean_pressure_pa()},
-      {"max_thickness_mm", summary.max_thickness_mm()},
-      {"skin_max_displacement_mm", summary.skin_max_displacement_mm()},
-      {"skin_volume_change_ml", summary.skin_volume_change_ml()},
-      {"min_scaled_jacobian", summary.min_scaled_jacobian()},
-      {"state_hash", summary.state_hash()},
-      {"zones", zones},
-      {"rejected_steps", summary.rejected_steps()},
-      {"error_estimate_mm", summary.error_estimate_mm()},
-      {"settling_error_mm", settling_error},
-      {"void_volume_ml", summary.void_volume_ml()},
-      {"undelivered_ml", summary.undelivered_ml()},
-      {"elastic_energy_mj", summary.elastic_energy_mj()},
-      {"kinetic_energy_mj", summary.kinetic_energy_mj()},
-      {"injection_work_mj", summary.injection_work_mj()},
-      {"film_dissipation_mj", summary.film_dissipation_mj()},
-      {"closed_cells", summary.closed_cells()},
-      {"ligaments", ligaments},
-      {"preview", preview_json(summary)},
-      {"cost", cost_json(summary.cost())},
-  };
+  nlohmann::ordered_json document = {
+      {"plan", plan}, {"state", state_name(simulation.state())}, {"reason", simulation.reason()}};
+  document.update(figures_of(simulation.summary()));
   return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
@@ -212,32 +93,22 @@ std::string summary_text(const std::string& plan, const v1::Simulation& simulati
     absl::StrAppendFormat(&text, "  zone %-24s %.2f mL, %.2f kPa mean, %.2f mm at most\n", zone.name(),
                           zone.volume_ml(), zone.mean_pressure_pa() / 1e3, zone.max_thickness_mm());
   }
+  for (const std::string& remark : s.remarks()) absl::StrAppend(&text, "  remark       ", remark, "\n");
   return absl::StrCat(text, kNotAMedicalDevice, "\n");
 }
 
 std::string series_csv(const v1::SimulationSpec& spec, const std::vector<v1::SeriesRow>& rows) {
-  std::string csv = series_header(spec);
+  const std::vector<SeriesColumn> columns = columns_of_series(spec);
+  const auto add_line = [&columns](std::string& csv, const auto& text_of) {
+    for (const SeriesColumn& column : columns) absl::StrAppend(&csv, text_of(column), ",");
+    csv.back() = '\n';
+  };
+  std::string csv;
+  add_line(csv, [](const SeriesColumn& column) { return column.name; });
+  // A row without the probe leaves its columns empty, so that the columns after it stay in their
+  // place.
   for (const v1::SeriesRow& row : rows) {
-    absl::StrAppend(&csv, row.step());
-    for (double value : {row.time_s(), row.step_ms(), row.injected_ml(), row.film_volume_ml(), row.gap_volume_ml(),
-                         row.max_pressure_pa(), row.min_pressure_pa(), row.max_thickness_mm(),
-                         row.skin_max_displacement_mm(), row.skin_speed_mm_per_s()}) {
-      absl::StrAppend(&csv, ",", number(value));
-    }
-    // A row without the probe leaves its columns empty, so that the columns after it keep their
-    // place.
-    for (int i = 0; i < spec.probes_size(); ++i) {
-      absl::StrAppend(&csv, ",", i < row.probe_thickness_mm_size() ? number(row.probe_thickness_mm(i)) : "");
-      absl::StrAppend(&csv, ",", i < row.probe_pressure_pa_size() ? number(row.probe_pressure_pa(i)) : "");
-    }
-    absl::StrAppend(&csv, ",", number(row.wall_ms()), ",", row.rejected_steps());
-    for (double value : {row.error_estimate_mm(), row.void_volume_ml(), row.elastic_energy_mj(),
-                         row.injection_work_mj(), row.film_dissipation_mj(), row.ligament_tension_n()}) {
-      absl::StrAppend(&csv, ",", number(value));
-    }
-    absl::StrAppend(&csv, ",", row.broken_ligament_points(), ",", row.closed_cells());
-    append_cost(csv, row.cost());
-    csv += "\n";
+    add_line(csv, [&row](const SeriesColumn& column) { return value_text(row, column); });
   }
   return csv;
 }

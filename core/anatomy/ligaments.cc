@@ -63,7 +63,7 @@ const std::vector<LigamentRow>& rows() {
   return table;
 }
 
-/// Looks landmarks up and keeps the first that is missing.
+/// Looks landmarks up and notes the first that is missing.
 class LandmarkReader {
  public:
   LandmarkReader(const geometry::FaceGeometry& face, std::string_view side) : face_(face), side_(side) {}

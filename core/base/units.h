@@ -11,6 +11,7 @@ namespace lipofill {
 
 inline constexpr double kMetresPerMillimetre = 1e-3;
 inline constexpr double kMillimetresPerMetre = 1e3;
+inline constexpr double kMetresPerCentimetre = 1e-2;
 inline constexpr double kCubicMetresPerMillilitre = 1e-6;
 inline constexpr double kMillilitresPerCubicMetre = 1e6;
 inline constexpr double kSquareCentimetresPerSquareMetre = 1e4;

@@ -52,7 +52,7 @@ const bool tried_to_pin = pin_kernels();
 
 }  // namespace
 
-void keep_algebra_on_this_thread() {
+void pin_algebra_to_this_thread() {
   // Debian's CHOLMOD opens OpenMP regions of four threads for copying loops. The first setting is a
   // thread's own, the second the process's.
   omp_set_max_active_levels(0);

@@ -4,10 +4,10 @@
 
 namespace lipofill::coupling {
 
-/// Holds OpenBLAS and CHOLMOD to the calling thread: sessions are the project's parallelism, one
+/// Pins OpenBLAS and CHOLMOD to the calling thread: sessions are the project's parallelism, one
 /// thread each. Every thread that uses them calls this first. Decision record:
 /// core/doc/decisions/001-openblas-with-locks.md.
-void keep_algebra_on_this_thread();
+void pin_algebra_to_this_thread();
 
 /// Returns the family of OpenBLAS kernels that this process computes with, for example "Haswell".
 ///

@@ -42,7 +42,7 @@ class CoupledFactor {
   /// C p of the implicit route.
   void multiply_compliance(const Eigen::VectorXd& p, Eigen::VectorXd& product);
 
-  /// Returns B S^-1 r; keeps r for solve_displacement.
+  /// Returns B S^-1 r; remembers r for solve_displacement.
   void solve_gap_response(const Eigen::VectorXd& r, Eigen::VectorXd& gap_response);
   /// dx = S^-1 (r + B^T p) with the r of the last solve_gap_response.
   void solve_displacement(const Eigen::VectorXd& pressure, Eigen::VectorXd& dx);

@@ -13,7 +13,7 @@ bool DensePressureRoute::solve(const PressureSystem& system, const Eigen::Vector
 }
 
 bool DensePressureRoute::solve_pressure(const PressureSystem& system, const Eigen::VectorXd& r, Eigen::VectorXd& dp) {
-  keep_algebra_on_this_thread();
+  pin_algebra_to_this_thread();
   const int n = system.n_cells();
   matrix_ = *compliance_;
   system.for_each_entry([&](int row, int column, double value) { matrix_(row, column) += value; });

@@ -56,7 +56,7 @@ Sparse augment(const Sparse& s, const Sparse& b) {
 class CholmodAnalysis {
  public:
   CholmodAnalysis() {
-    keep_algebra_on_this_thread();
+    pin_algebra_to_this_thread();
     cholmod_start(&common_);
     common_.supernodal = CHOLMOD_SUPERNODAL;
     common_.print = 0;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxIterations = 60;
 /// An edge of hardly any flow between thick and thin cells may turn round in every iteration; one
-/// that has turned so often keeps its direction. Its flow is then too small to matter, or the
+/// that has turned so often goes on in its direction. Its flow is then too small to matter, or the
 /// volume of a cell turns negative and the step is refused.
 constexpr int kMaxTurns = 2;
 constexpr int kUndampedIterations = 20;
@@ -132,7 +132,7 @@ bool FilmSolver::solve_pressure(double tolerance, FilmSolution& solution) {
     const double error = mismatch(solution.volume);
     const bool is_at_round_off = error <= 100.0 * tolerance && error > 0.5 * last;
     if (error <= tolerance || is_at_round_off) {
-      keep_void(solution);
+      measure_void(solution);
       return true;
     }
     last = error;
@@ -171,7 +171,7 @@ double FilmSolver::mismatch(const Eigen::VectorXd& volume) const {
   return largest / find_fullest(volume);
 }
 
-void FilmSolver::keep_void(FilmSolution& solution) const {
+void FilmSolver::measure_void(FilmSolution& solution) const {
   solution.void_volume.setZero(residual_.size());
   for (Eigen::Index i = 0; i < residual_.size(); ++i) {
     if (held_[i]) solution.void_volume[i] = std::max(0.0, -residual_[i]);

@@ -64,7 +64,7 @@ class FilmSolver {
   void evaluate(FilmSolution& solution);
   void hold_cells_at_the_limit(const Eigen::VectorXd& p);
   double mismatch(const Eigen::VectorXd& volume) const;
-  void keep_void(FilmSolution& solution) const;
+  void measure_void(FilmSolution& solution) const;
   void advance(FilmSolution& solution);
   void go(double share, FilmSolution& solution);
 

@@ -9,18 +9,6 @@ namespace {
 
 const std::array<double, 2> kGauss = {0.5 - 0.5 / std::sqrt(3.0), 0.5 + 0.5 / std::sqrt(3.0)};
 
-/// Ends of [low, high] and every line k/n strictly between them.
-std::vector<double> cut_at_grid_lines(double low, double high, int n) {
-  constexpr double kSliver = 1e-9;
-  std::vector<double> cuts = {low};
-  for (int k = static_cast<int>(std::floor(low * n)) + 1; k < n && static_cast<double>(k) / n < high; ++k) {
-    const double line = static_cast<double>(k) / n;
-    if (line - cuts.back() > kSliver && high - line > kSliver) cuts.push_back(line);
-  }
-  cuts.push_back(high);
-  return cuts;
-}
-
 int interval_of(double value, int n) {
   return std::clamp(static_cast<int>(std::floor(value * n)), 0, n - 1);
 }
@@ -35,16 +23,29 @@ class Builder {
   Builder(const geometry::LayeredGrid& tissue, const WallNodes& walls, const film::FilmGrid& film)
       : tissue_(tissue), walls_(walls), film_(film) {}
 
-  void add_cell(int cell) {
-    const int slot = film_.slot_of_cell[cell];
-    const int i = film_.slot_i(slot);
-    const int j = film_.slot_j(slot);
-    const std::vector<double> xi = cut_at_grid_lines(film_.vertex_xi(i), film_.vertex_xi(i + 1), tissue_.n_xi);
-    const std::vector<double> eta = cut_at_grid_lines(film_.vertex_eta(j), film_.vertex_eta(j + 1), tissue_.n_eta);
-    wall_place_of_place_.clear();
-    for (size_t b = 0; b + 1 < eta.size(); ++b) {
-      for (size_t a = 0; a + 1 < xi.size(); ++a) add_piece(cell, {xi[a], xi[a + 1]}, {eta[b], eta[b + 1]});
+  /// Pieces come cell by cell.
+  void add_piece(const film::CellPiece& piece) {
+    if (piece.cell != cell_) wall_place_of_place_.clear();
+    cell_ = piece.cell;
+    const int lane = n_pieces_++ % kLanes;
+    if (lane == 0) result_.batches.emplace_back();
+    GapGeometry::Batch& batch = result_.batches.back();
+    const geometry::ChartBox& box = piece.box;
+    const std::array<double, 2> xi = {box.xi_min, box.xi_max};
+    const std::array<double, 2> eta = {box.eta_min, box.eta_max};
+    for (int g = 0; g < 2; ++g) {
+      batch.s[g][lane] = (xi[0] + kGauss[g] * (xi[1] - xi[0])) * tissue_.n_xi - piece.quad_i;
+      batch.t[g][lane] = (eta[0] + kGauss[g] * (eta[1] - eta[0])) * tissue_.n_eta - piece.quad_j;
     }
+    const double weight = 0.25 * (xi[1] - xi[0]) * tissue_.n_xi * (eta[1] - eta[0]) * tissue_.n_eta;
+    for (int g = 0; g < 4; ++g) batch.weight[g][lane] = piece.share[g] * weight;
+    const std::array<int, 4> places = quad_places(tissue_, piece.quad_i, piece.quad_j);
+    for (int c = 0; c < 4; ++c) {
+      batch.outer[c][lane] = walls_.outer[places[c]];
+      batch.inner[c][lane] = walls_.inner[places[c]];
+      batch.wall_place[c][lane] = find_wall_place(piece.cell, places[c]);
+    }
+    batch.cell[lane] = piece.cell;
   }
 
   void add_vertex(double xi, double eta) {
@@ -74,26 +75,6 @@ class Builder {
     int cell, outer, inner;
   };
 
-  void add_piece(int cell, std::array<double, 2> xi, std::array<double, 2> eta) {
-    const int lane = n_pieces_++ % kLanes;
-    if (lane == 0) result_.batches.emplace_back();
-    GapGeometry::Batch& batch = result_.batches.back();
-    const int i = interval_of(0.5 * (xi[0] + xi[1]), tissue_.n_xi);
-    const int j = interval_of(0.5 * (eta[0] + eta[1]), tissue_.n_eta);
-    for (int g = 0; g < 2; ++g) {
-      batch.s[g][lane] = (xi[0] + kGauss[g] * (xi[1] - xi[0])) * tissue_.n_xi - i;
-      batch.t[g][lane] = (eta[0] + kGauss[g] * (eta[1] - eta[0])) * tissue_.n_eta - j;
-    }
-    batch.weight[lane] = 0.25 * (xi[1] - xi[0]) * tissue_.n_xi * (eta[1] - eta[0]) * tissue_.n_eta;
-    const std::array<int, 4> places = quad_places(tissue_, i, j);
-    for (int c = 0; c < 4; ++c) {
-      batch.outer[c][lane] = walls_.outer[places[c]];
-      batch.inner[c][lane] = walls_.inner[places[c]];
-      batch.wall_place[c][lane] = find_wall_place(cell, places[c]);
-    }
-    batch.cell[lane] = cell;
-  }
-
   int find_wall_place(int cell, int place) {
     const auto [entry, is_new] = wall_place_of_place_.try_emplace(place, static_cast<int>(places_.size()));
     if (is_new) places_.push_back({cell, walls_.outer[place], walls_.inner[place]});
@@ -107,7 +88,7 @@ class Builder {
         batch.s[g][lane] = batch.s[g][0];
         batch.t[g][lane] = batch.t[g][0];
       }
-      batch.weight[lane] = 0.0;
+      for (Lanes& weight : batch.weight) weight[lane] = 0.0;
       for (int c = 0; c < 4; ++c) {
         batch.outer[c][lane] = batch.outer[c][0];
         batch.inner[c][lane] = batch.inner[c][0];
@@ -153,6 +134,7 @@ class Builder {
   const film::FilmGrid& film_;
   GapGeometry result_;
   int n_pieces_ = 0;
+  int cell_ = -1;                                     ///< the cell under way
   std::vector<Place> places_;                         ///< those of the walls, cell by cell
   std::unordered_map<int, int> wall_place_of_place_;  ///< serves the cell under way
 };
@@ -160,9 +142,10 @@ class Builder {
 }  // namespace
 
 GapGeometry make_gap_geometry(const geometry::LayeredGrid& tissue, const WallNodes& walls, const film::FilmGrid& film,
-                              const std::vector<int>& dof_of_component, int n_dofs) {
+                              const std::vector<film::CellPiece>& pieces, const std::vector<int>& dof_of_component,
+                              int n_dofs) {
   Builder builder(tissue, walls, film);
-  for (int cell = 0; cell < film.n_cells(); ++cell) builder.add_cell(cell);
+  for (const film::CellPiece& piece : pieces) builder.add_piece(piece);
   for (int j = 0; j <= film.n_eta; ++j) {
     for (int i = 0; i <= film.n_xi; ++i) builder.add_vertex(film.vertex_xi(i), film.vertex_eta(j));
   }

@@ -11,7 +11,7 @@ struct GapPiece {
   Vector3<T> middle[4];    ///< half-way between the walls [m]
   Vector3<T> distance[4];  ///< it points from the inner to the outer wall [m]
   T s[2], t[2];            ///< places of the Gauss points
-  T weight;                ///< each of the four has it
+  T weight[4];             ///< of the Gauss points, s fastest
 };
 
 /// Derivatives of a piece's volume [m2].
@@ -26,7 +26,8 @@ struct GapGradient {
 ///     V = int det(dX/ds, dX/dt, d) ds dt du = int [a x b + (a' x b')/12] . d ds dt,     X = middle + u d, |u| < 1/2
 ///
 /// a, b the tangents of the middle along s and t, a', b' those of d: exact by 2 x 2 points. Where
-/// both walls touch, d = 0, volume and by_middle are exactly 0.
+/// both walls touch, d = 0, volume and by_middle are exactly 0. Weights of a piece that an outline
+/// cuts come from geometry::fit_gauss_shares.
 template <bool kWithGradient, typename T>
 LIPOFILL_INLINE T integrate_piece(const GapPiece<T>& piece, GapGradient<T>* gradient) {
   using Vector = Vector3<T>;
@@ -40,16 +41,19 @@ LIPOFILL_INLINE T integrate_piece(const GapPiece<T>& piece, GapGradient<T>* grad
   const T twelfth = T{} + 1.0 / 12.0;
   Vector by_m_s[2]{}, by_m_t[2]{}, by_d_s[2]{}, by_d_t[2]{}, by_d[4]{};
   T volume{};
-  for (const T& t : piece.t) {
+  for (int q = 0; q < 2; ++q) {
+    const T& t = piece.t[q];
     const Vector a = multiply_add(t, m_along_s[1] - m_along_s[0], m_along_s[0]);
     const Vector a_of_d = multiply_add(t, d_along_s[1] - d_along_s[0], d_along_s[0]);
     const Vector d_left = multiply_add(t, d_along_t[0], d[0]);
-    for (const T& s : piece.s) {
+    for (int p = 0; p < 2; ++p) {
+      const T& s = piece.s[p];
+      const T& weight = piece.weight[2 * q + p];
       const Vector b = multiply_add(s, m_along_t[1] - m_along_t[0], m_along_t[0]);
       const Vector b_of_d = multiply_add(s, d_along_t[1] - d_along_t[0], d_along_t[0]);
       const Vector distance = multiply_add(s, a_of_d, d_left);
       const Vector normal = multiply_add(twelfth, cross(a_of_d, b_of_d), cross(a, b));
-      volume = multiply_add(piece.weight, dot(normal, distance), volume);
+      volume = multiply_add(weight, dot(normal, distance), volume);
       if (!kWithGradient) continue;
       const auto spread = [&](const Vector& by_s, const Vector& by_t, Vector(&along_s)[2], Vector(&along_t)[2]) {
         along_s[0] = multiply_add(one - t, by_s, along_s[0]);
@@ -57,12 +61,12 @@ LIPOFILL_INLINE T integrate_piece(const GapPiece<T>& piece, GapGradient<T>* grad
         along_t[0] = multiply_add(one - s, by_t, along_t[0]);
         along_t[1] = multiply_add(s, by_t, along_t[1]);
       };
-      const Vector weighted = piece.weight * distance;
+      const Vector weighted = weight * distance;
       spread(cross(b, weighted), cross(weighted, a), by_m_s, by_m_t);
       const Vector weighted_12 = twelfth * weighted;
       spread(cross(b_of_d, weighted_12), cross(weighted_12, a_of_d), by_d_s, by_d_t);
       const T n[4] = {(one - s) * (one - t), s * (one - t), s * t, (one - s) * t};
-      for (int c = 0; c < 4; ++c) by_d[c] = multiply_add(n[c] * piece.weight, normal, by_d[c]);
+      for (int c = 0; c < 4; ++c) by_d[c] = multiply_add(n[c] * weight, normal, by_d[c]);
     }
   }
   if (!kWithGradient) return volume;

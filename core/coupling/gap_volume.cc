@@ -20,7 +20,7 @@ GapPiece<Lanes> gather_pieces(const GapGeometry::Batch& batch, const double* x) 
     pieces.s[g] = batch.s[g];
     pieces.t[g] = batch.t[g];
   }
-  pieces.weight = batch.weight;
+  for (int g = 0; g < 4; ++g) pieces.weight[g] = batch.weight[g];
   return pieces;
 }
 
@@ -43,8 +43,8 @@ void add_gradients(const GapGradient<Lanes>& gradient, const GapGeometry::Batch&
 
 GapVolume::GapVolume(const geometry::LayeredGrid& tissue, const WallNodes& walls, const film::FilmGrid& film,
                      const std::vector<int>& dof_of_component, int n_dofs)
-    : GapVolume(std::make_shared<const GapGeometry>(make_gap_geometry(tissue, walls, film, dof_of_component, n_dofs))) {
-}
+    : GapVolume(std::make_shared<const GapGeometry>(make_gap_geometry(
+          tissue, walls, film, film::cut_cells(film, tissue.n_xi, tissue.n_eta), dof_of_component, n_dofs))) {}
 
 GapVolume::GapVolume(std::shared_ptr<const GapGeometry> geometry)
     : geometry_(std::move(geometry)),
@@ -120,7 +120,7 @@ double compute_swept_volume(const geometry::LayeredGrid& grid, const Eigen::Matr
     for (int i = 0; i < grid.n_xi; ++i) {
       const int places[4] = {grid.surface_index(i, j), grid.surface_index(i + 1, j), grid.surface_index(i + 1, j + 1),
                              grid.surface_index(i, j + 1)};
-      GapPiece<double> piece{{}, {}, {low, 1.0 - low}, {low, 1.0 - low}, 0.25};
+      GapPiece<double> piece{{}, {}, {low, 1.0 - low}, {low, 1.0 - low}, {0.25, 0.25, 0.25, 0.25}};
       for (int c = 0; c < 4; ++c) {
         piece.middle[c] = 0.5 * (point(current, places[c]) + point(rest, places[c]));
         piece.distance[c] = point(current, places[c]) - point(rest, places[c]);

@@ -14,8 +14,9 @@ int max_iterations(int n_cells) {
 
 }  // namespace
 
-void LaggedPressureRoute::keep_mobility(const PressureSystem& system, const std::vector<Eigen::VectorXd>& mobility) {
-  keep_algebra_on_this_thread();
+void LaggedPressureRoute::renew_preconditioner(const PressureSystem& system,
+                                               const std::vector<Eigen::VectorXd>& mobility) {
+  pin_algebra_to_this_thread();
   const int n = system.n_cells();
   const Eigen::MatrixXd& compliance = direct_.compliance();
   compliance_.assign(compliance);

@@ -15,7 +15,7 @@ namespace lipofill::coupling {
 ///
 ///     M = J0 + C = L L^T
 ///
-/// with the J0 of keep_mobility, which stays for as long as C does. z = M^-1 r also gives
+/// with the J0 of renew_preconditioner, which stays for as long as C does. z = M^-1 r also gives
 ///
 ///     C z = r - J0 z
 ///
@@ -31,14 +31,14 @@ class LaggedPressureRoute : public PressureRoute {
   static int iterations_of_a_preconditioner(int n_cells) { return 4 + n_cells / 45; }
 
   void set_walls(const WallCompliance& walls) override { direct_.set_walls(walls); }
-  /// Computes C p with the C of the last keep_mobility.
+  /// Computes C p with the C of the last renew_preconditioner.
   void multiply_walls(const Eigen::VectorXd& p, Eigen::VectorXd& product) override { compliance_.multiply(p, product); }
   /// `moved` is good to float32: multiply_walls is exact.
   bool solve(const PressureSystem& system, const Eigen::VectorXd& r, double tolerance, Eigen::VectorXd& dp,
              Eigen::VectorXd& moved) override;
 
   bool is_lagged() const override { return true; }
-  void keep_mobility(const PressureSystem& system, const std::vector<Eigen::VectorXd>& mobility) override;
+  void renew_preconditioner(const PressureSystem& system, const std::vector<Eigen::VectorXd>& mobility) override;
 
   PressureCounts counts() const override { return {gradients_.n_solves(), gradients_.n_iterations(), fallbacks_}; }
 

@@ -38,10 +38,11 @@ class PressureRoute {
   virtual bool solve(const PressureSystem& system, const Eigen::VectorXd& r, double tolerance, Eigen::VectorXd& dp,
                      Eigen::VectorXd& moved) = 0;
 
-  /// True when solves with new walls need keep_mobility first.
+  /// True when solves with new walls need renew_preconditioner first.
   virtual bool is_lagged() const { return false; }
   /// Takes J0 for the preconditioner, the values of dt J of each film.
-  virtual void keep_mobility(const PressureSystem& /*system*/, const std::vector<Eigen::VectorXd>& /*mobility*/) {}
+  virtual void renew_preconditioner(const PressureSystem& /*system*/,
+                                    const std::vector<Eigen::VectorXd>& /*mobility*/) {}
 
   virtual PressureCounts counts() const { return {}; }
 };

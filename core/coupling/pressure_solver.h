@@ -17,7 +17,8 @@ namespace lipofill::coupling {
 ///
 /// - diagonal: sparse LDL^T (diagonal_pressure_route.h);
 /// - dense, up to kMaxDirectCells: Cholesky (dense_pressure_route.h);
-/// - dense, more cells: conjugate gradients with a factor that is kept (lagged_pressure_route.h);
+/// - dense, more cells: conjugate gradients with a factor of an earlier state
+///   (lagged_pressure_route.h);
 /// - implicit: conjugate gradients with the factor of a diagonal C (implicit_pressure_route.h).
 ///
 /// Checked by tests/unit/coupling/film_solve_test.cc and pressure_solver_test.cc.
@@ -33,7 +34,7 @@ class PressureSolver {
   /// Computes C p.
   void multiply_walls(const Eigen::VectorXd& p, Eigen::VectorXd& product) { route_->multiply_walls(p, product); }
 
-  /// True when solves with these walls need keep_mobility first.
+  /// True when solves with these walls need renew_preconditioner first.
   bool is_lagged() const { return route_ != nullptr && route_->is_lagged(); }
   /// Iterations, over all that a fresh preconditioner would need, that cost as much as a new one.
   int iterations_of_a_preconditioner() const {
@@ -41,7 +42,9 @@ class PressureSolver {
   }
   /// Makes the preconditioner of a dense C from J0, the values of dt J of each film in the order of
   /// FilmProjection::linearise.
-  void keep_mobility(const std::vector<Eigen::VectorXd>& mobility) { route_->keep_mobility(system_, mobility); }
+  void renew_preconditioner(const std::vector<Eigen::VectorXd>& mobility) {
+    route_->renew_preconditioner(system_, mobility);
+  }
 
   /// Takes dt J of every film at the pressures `p`.
   /// @param held       cells whose dp is 0 (n)

@@ -66,7 +66,7 @@ bool SupernodalFactor<Scalar>::fill(const Sparse& s, const Sparse& b) {
 
 template <typename Scalar>
 bool SupernodalFactor<Scalar>::factorise(const Sparse& s, const Sparse& b) {
-  keep_algebra_on_this_thread();
+  pin_algebra_to_this_thread();
   if (!fill(s, b)) return false;
   for (size_t k = 0; k < analysis_->supernodes().size(); ++k) {
     const Supernode& node = analysis_->supernodes()[k];
@@ -181,7 +181,7 @@ void SupernodalFactor<Scalar>::add_gathered_squares(int& n_gathered) {
 
 template <typename Scalar>
 void SupernodalFactor<Scalar>::solve_forward(const Eigen::VectorXd& r, Eigen::VectorXd& gap_response) {
-  keep_algebra_on_this_thread();
+  pin_algebra_to_this_thread();
   const int n_dofs = analysis_->n_dofs();
   for (int k = 0; k < n_dofs; ++k) {
     const int dof = analysis_->order()[k];
@@ -203,7 +203,7 @@ void SupernodalFactor<Scalar>::solve_forward(const Eigen::VectorXd& r, Eigen::Ve
 
 template <typename Scalar>
 void SupernodalFactor<Scalar>::solve_backward(const Eigen::VectorXd& pressure, Eigen::VectorXd& x) {
-  keep_algebra_on_this_thread();
+  pin_algebra_to_this_thread();
   const int n_dofs = analysis_->n_dofs();
   solution_.head(n_dofs) = forward_.head(n_dofs);
   solution_.tail(analysis_->n_cells()) = -(pressure / pressure_scale_).template cast<Scalar>();

@@ -30,10 +30,10 @@ class SupernodalFactor {
   /// C (n_cells, n_cells), symmetric.
   void compute_compliance(Eigen::MatrixXd& compliance);
 
-  /// Half a solve: keeps y = L11^-1 r and returns B S^-1 r = L21 y.
+  /// Half a solve: leaves y = L11^-1 r for the other half and returns B S^-1 r = L21 y.
   void solve_forward(const Eigen::VectorXd& r, Eigen::VectorXd& gap_response);
   /// The other half: x = S^-1 (r + B^T p) = L11^-T (y + L21^T p), with the y that solve_forward
-  /// kept.
+  /// left.
   void solve_backward(const Eigen::VectorXd& pressure, Eigen::VectorXd& x);
 
  private:

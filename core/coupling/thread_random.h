@@ -6,7 +6,7 @@ namespace lipofill::coupling {
 /// library: one generator for the whole process, so that two orderings at once, or anyone else who
 /// draws meanwhile, make an ordering another than it is alone. A program that links this library
 /// has a rand() and srand() of its own in their place: the same numbers, from a generator for each
-/// thread. Whoever calls METIS calls this, which keeps the two in the program and says whether
+/// thread. Whoever calls METIS calls this, which links the two into the program and says whether
 /// METIS finds them. Checked by tests/property/determinism_test.cc.
 bool has_random_numbers_of_its_own();
 

@@ -62,12 +62,33 @@ FilmWalls find_walls(const geometry::LayeredGrid& grid, const plan::FilmLayout& 
     return (level * grid.n_eta + quad.j) * grid.n_xi + quad.i + 1;
   };
   FilmWalls walls;
-  for (const WallPressure& quad : spread_over_wall(grid, film.grid, pressure)) {
+  for (const WallPressure& quad : spread_over_wall(grid, film.pieces, pressure)) {
     walls.outer.push_back({element(film.level - 1, quad), kDeepFace, quad.pressure});
     if (film.level == grid.n_levels() - 1) continue;
     walls.inner.push_back({element(film.level, quad), kSkinFace, quad.pressure});
   }
   return walls;
+}
+
+/// Two nodes that the edge of a zone holds together (plan/zone_bond.h).
+struct Attachment {
+  int outer = 0;
+  int inner = 0;
+  double stiffness = 0.0;  ///< [N/m]
+};
+
+std::vector<Attachment> find_attachments(const std::vector<plan::FilmLayout>& films, const mechanics::HeldMesh& held) {
+  std::vector<Attachment> attachments;
+  size_t walls = 0;
+  for (const plan::FilmLayout& film : films) {
+    if (film.wall != plan::FilmWallKind::kTissue) continue;
+    const coupling::WallNodes& nodes = held.walls[walls++];
+    for (size_t place = 0; place < film.bond.open.size(); ++place) {
+      if (!film.bond.open[place] || film.bond.stiffness[place] <= 0.0) continue;
+      attachments.push_back({nodes.outer[place], nodes.inner[place], film.bond.stiffness[place]});
+    }
+  }
+  return attachments;
 }
 
 /// A part of the deck: a head of one or more lines, and lines that are made when they are read.
@@ -109,6 +130,8 @@ struct CalculixDeck::Content {
   std::vector<int> first_level;  ///< each layer begins there; one more ends the last
   std::vector<model::TissueLayerSpec> layers;
   std::vector<FilmWalls> films;
+  std::vector<Attachment> attachments;
+  size_t n_springs = 0;
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
   std::vector<Section> sections;
 
@@ -121,6 +144,9 @@ struct CalculixDeck::Content {
   void add_materials();
   void add_supports();
   void add_springs();
+  void add_attachments();
+  void add_spring_set(const char* type, const std::string& set, const std::string& directions, double stiffness,
+                      std::vector<std::string> ends);
   void add_surface(const std::string& name, const std::vector<LoadedFace>& faces);
   void add_step();
   void add_loads();
@@ -201,27 +227,44 @@ void CalculixDeck::Content::add_springs() {
   for (size_t n = 0; n < supports.spring.size(); ++n) {
     if (supports.spring[n] > 0.0) nodes_of_stiffness[supports.spring[n]].push_back(static_cast<int>(n));
   }
-  auto element = static_cast<size_t>(held.split.mesh.n_hexahedra());
   int group = 0;
   for (const auto& [stiffness, nodes] : nodes_of_stiffness) {
     ++group;
     for (int c = 0; c < 3; ++c) {
-      std::vector<int> free;
+      std::vector<std::string> ends;
       for (const int node : nodes) {
-        if (!supports.fixed[node][c]) free.push_back(node);
+        if (!supports.fixed[node][c]) ends.push_back(absl::StrCat(node + 1));
       }
-      if (free.empty()) continue;
-      const std::string set = absl::StrCat("SUPPORT", group, "_", kAxis[c]);
-      const size_t n_free = free.size();
-      sections.push_back({absl::StrCat("*ELEMENT, TYPE=SPRING1, ELSET=", set, "\n"), n_free,
-                          [free = std::move(free), element](size_t k) {
-                            return absl::StrCat(element + k + 1, ", ", free[k] + 1, "\n");
-                          }});
-      add(absl::StrCat("*SPRING, ELSET=", set, "\n", c + 1, "\n",
-                       number(stiffness * kNewtonsPerMillimetrePerNewtonPerMetre), "\n"));
-      element += n_free;
+      add_spring_set("SPRING1", absl::StrCat("SUPPORT", group, "_", kAxis[c]), absl::StrCat(c + 1), stiffness,
+                     std::move(ends));
     }
   }
+  add_attachments();
+}
+
+/// A spring a direction between the two walls at each place where an attachment holds them.
+void CalculixDeck::Content::add_attachments() {
+  for (size_t k = 0; k < attachments.size(); ++k) {
+    const Attachment& attachment = attachments[k];
+    for (int c = 0; c < 3; ++c) {
+      add_spring_set("SPRING2", absl::StrCat("ATTACHMENT", k + 1, "_", kAxis[c]), absl::StrCat(c + 1, ", ", c + 1),
+                     attachment.stiffness, {absl::StrCat(attachment.outer + 1, ", ", attachment.inner + 1)});
+    }
+  }
+}
+
+/// @param ends  the nodes of each spring
+void CalculixDeck::Content::add_spring_set(const char* type, const std::string& set, const std::string& directions,
+                                           double stiffness, std::vector<std::string> ends) {
+  if (ends.empty()) return;
+  const size_t first = held.split.mesh.n_hexahedra() + n_springs + 1;
+  n_springs += ends.size();
+  const size_t n_ends = ends.size();
+  sections.push_back(
+      {absl::StrCat("*ELEMENT, TYPE=", type, ", ELSET=", set, "\n"), n_ends,
+       [ends = std::move(ends), first](size_t k) { return absl::StrCat(first + k, ", ", ends[k], "\n"); }});
+  add(absl::StrCat("*SPRING, ELSET=", set, "\n", directions, "\n",
+                   number(stiffness * kNewtonsPerMillimetrePerNewtonPerMetre), "\n"));
 }
 
 void CalculixDeck::Content::add_surface(const std::string& name, const std::vector<LoadedFace>& faces) {
@@ -292,6 +335,7 @@ absl::StatusOr<CalculixDeck> CalculixDeck::create(const model::FaceModel& model,
     films.push_back(*std::move(film));
   }
   content->held = mechanics::hold_mesh(model, films);
+  content->attachments = find_attachments(films, content->held);
   content->hexahedra_a_layer_level = grid.n_xi * grid.n_eta;
   for (int layer = 0; layer <= grid.n_layers(); ++layer) content->first_level.push_back(grid.first_level(layer));
   content->layers = model.layers;

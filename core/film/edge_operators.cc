@@ -7,21 +7,25 @@
 namespace lipofill::film {
 namespace {
 
+/// The fat of a quarter that the outline cuts is as fast as the flux demands; below this share the
+/// estimate is kept from growing without bound.
+constexpr double kLeastShareOfInertia = 0.1;
+
 QuadrantForm unit_form(const QuadrantMetric& g, const QuadrantEdges& edges) {
   QuadrantForm form;
   if (edges.xi >= 0 && edges.eta >= 0) {
-    const double scale = 0.25 / g.sqrt_g;
+    const double scale = 0.25 * g.share / g.sqrt_g;
     form = {scale * g.g22, -scale * g.g12, scale * g.g11};
   } else if (edges.xi >= 0) {
-    form.w11 = 0.25 * g.sqrt_g / g.g11;
+    form.w11 = 0.25 * g.share * g.sqrt_g / g.g11;
   } else if (edges.eta >= 0) {
-    form.w22 = 0.25 * g.sqrt_g / g.g22;
+    form.w22 = 0.25 * g.share * g.sqrt_g / g.g22;
   }
   return form;
 }
 
 QuadrantForm unit_mass_form(const QuadrantMetric& g, const QuadrantEdges& edges) {
-  const double scale = 0.25 / g.sqrt_g;
+  const double scale = 0.25 / (std::max(g.share, kLeastShareOfInertia) * g.sqrt_g);
   const bool both = edges.xi >= 0 && edges.eta >= 0;
   return {edges.xi >= 0 ? scale * g.g11 : 0.0, both ? scale * g.g12 : 0.0, edges.eta >= 0 ? scale * g.g22 : 0.0};
 }

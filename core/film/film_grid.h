@@ -27,6 +27,18 @@ struct LeakyWall {
   double conductance = 0.0;  ///< [m3/(Pa s)]
 };
 
+/// Shares of a slot's quarters (quadrants, film_metric.h) that lie inside a zone's outline.
+using SlotCover = std::array<double, 4>;
+inline constexpr SlotCover kWholeSlot = {1.0, 1.0, 1.0, 1.0};
+
+/// What a zone covers of a slot that is not its own cell, or too little to be one: it counts as
+/// part of the cell beside.
+struct Fragment {
+  int cell = 0;
+  int slot = 0;
+  SlotCover cover = kWholeSlot;
+};
+
 /// Topology of the staggered film grid: n_xi x n_eta slots over a box of the chart, of which those
 /// in a zone are cells. Pressure and volume live on cells, velocity on the open edges. Edges
 /// between two zones, or between a cell and no cell, are sealed walls and are not in the list.
@@ -37,6 +49,8 @@ struct FilmGrid {
   std::vector<int> cell_of_slot;  ///< (n_xi * n_eta), xi fastest; -1: no cell
   std::vector<int> slot_of_cell;
   std::vector<int> zone_of_cell;
+  std::vector<SlotCover> cover;                  ///< a cell; less than whole where an outline cuts its slot
+  std::vector<Fragment> fragments;               ///< ascending in cell
   std::vector<Edge> edges;                       ///< ascending in slot of the left cell, xi before eta
   std::vector<std::array<int, 4>> edge_of_side;  ///< a cell's edges by Side; -1: sealed
   std::vector<LeakyWall> leaky_walls;            ///< sealed edges that are not quite tight
@@ -56,10 +70,19 @@ struct FilmGrid {
 /// Slots on the two sides of a wall inside a zone, the lower one first.
 using WalledSlots = std::set<std::pair<int, int>>;
 
+/// What a zone covers of a slot, by slot; see FilmGrid::fragments.
+struct SlotFragment {
+  int into_slot = 0;  ///< the slot of the cell that it counts to
+  int slot = 0;
+  SlotCover cover = kWholeSlot;
+};
+
 /// Numbers cells and edges. `zone_of_slot`: (n_xi * n_eta), -1 where there is no film. Edges in
-/// `walls` are sealed.
+/// `walls` are sealed, and so are those at which the fat of one of the cells ends before it.
+/// `cover_of_slot`: empty where every cell is whole.
 /// Checked by tests/unit/film/edge_operators_test.cc.
 FilmGrid make_film_grid(const geometry::ChartBox& extent, int n_xi, int n_eta, const std::vector<int>& zone_of_slot,
-                        const WalledSlots& walls = {});
+                        const WalledSlots& walls = {}, const std::vector<SlotCover>& cover_of_slot = {},
+                        const std::vector<SlotFragment>& fragments = {});
 
 }  // namespace lipofill::film

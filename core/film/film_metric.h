@@ -16,6 +16,7 @@ struct QuadrantMetric {
   double g12 = 0.0;
   double g22 = 0.0;
   double sqrt_g = 0.0;
+  double share = 1.0;  ///< of the quarter that lies inside the zone's outline
 };
 
 /// The film's mid-surface as it is now: the paper's distortion matrix, a quarter of a cell at a
@@ -26,7 +27,9 @@ struct QuadrantMetric {
 /// symmetric whatever the angle between xi and eta.
 struct FilmMetric {
   std::vector<std::array<QuadrantMetric, 4>> quadrants;  ///< a cell
-  Eigen::VectorXd area;       ///< [m2] (n_cells)  a = 1/4 sum of sqrt_g: exact on flat parallelograms and trapezia
+  /// [m2] (n_cells)  a = 1/4 sum of share sqrt_g, with the cell's fragments: exact on flat parallelograms and trapezia
+  /// that no outline cuts, second order on others.
+  Eigen::VectorXd area;
   Eigen::Matrix3Xd centre;    ///< [m]  (3, n_cells)
   Eigen::Matrix3Xd vertices;  ///< [m]  (3, n_vertices)
 };

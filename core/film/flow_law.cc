@@ -6,7 +6,7 @@
 namespace lipofill::film {
 namespace {
 
-/// Share of the Newtonian conductance that an unyielded quadrant keeps in the tangent. It steers
+/// Share of the Newtonian conductance that an unyielded quadrant has in the tangent. It steers
 /// Newton's iteration only, never the flux.
 constexpr double kLeastTangent = 1e-9;
 
@@ -68,8 +68,9 @@ void FlowLaw::set_quadrants(const Eigen::VectorXd& edge_thickness) {
   for (int cell = 0; cell < grid_->n_cells(); ++cell) {
     for (int q = 0; q < 4; ++q) {
       const double h = mean_thickness(edge_thickness.data(), quadrant_edges(*grid_, cell, q));
-      const double c = metric_->quadrants[cell][q].sqrt_g / (48.0 * fat_.viscosity);
-      quadrants_[cell][q] = h > 0.0 ? Quadrant{reference_[cell][q], 1.0 / (c * h * h * h), h} : Quadrant{};
+      const QuadrantMetric& metric = metric_->quadrants[cell][q];
+      const double c = metric.share * metric.sqrt_g / (48.0 * fat_.viscosity);
+      quadrants_[cell][q] = h > 0.0 && c > 0.0 ? Quadrant{reference_[cell][q], 1.0 / (c * h * h * h), h} : Quadrant{};
     }
   }
 }

@@ -37,7 +37,7 @@ class FlowLaw {
   bool is_linear() const { return fat_.is_newtonian(); }
   /// Adds F(D) to `flux` (n_edges).
   void add_flux(const Eigen::VectorXd& drive, Eigen::Ref<Eigen::VectorXd> flux);
-  /// dF/dD as forms [m3/(Pa s)]. Where nothing flows it is kept just above zero, so that a pressure
+  /// dF/dD as forms [m3/(Pa s)]. Where nothing flows it stays just above zero, so that a pressure
   /// follows.
   const QuadrantForms& linearise(const Eigen::VectorXd& drive);
 

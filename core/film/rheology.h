@@ -19,8 +19,8 @@ struct Fat {
 
   bool is_newtonian() const { return flow_index == 1.0 && yield_stress == 0.0; }
   bool is_elastic() const { return shear_modulus < std::numeric_limits<double>::infinity(); }
-  /// Inertia is kept for Newtonian fat only. rho h^2 / (12 mu dt), its share of the momentum, is
-  /// below 1e-3 for any fat thick enough to have a yield stress.
+  /// Only Newtonian fat has inertia. rho h^2 / (12 mu dt), its share of the momentum, is below 1e-3
+  /// for any fat thick enough to have a yield stress.
   bool has_inertia() const { return is_newtonian() && !is_elastic(); }
 };
 

@@ -1,45 +1,17 @@
 #include "core/film/viscosity.h"
 
-#include <algorithm>
-
 namespace lipofill::film {
 namespace {
 
-/// Keeps the system regular on dry edges, whose velocity is set to zero afterwards [m].
+/// Makes the system regular on dry edges, whose velocity is set to zero afterwards [m].
 constexpr double kThinnest = 1e-7;
 constexpr double kTolerance = 1e-13;
 /// Conjugate gradients end after as many iterations as there are unknowns but for rounding.
 constexpr int kMaxIterationsAnEdge = 4;
 
-/// Cells around vertex (i, j), by (side of xi) + 2 (side of eta); -1 where there is none.
-std::array<int, 4> cells_around(const FilmGrid& grid, int i, int j) {
-  std::array<int, 4> cells = {-1, -1, -1, -1};
-  for (int q = 0; q < 4; ++q) {
-    const int ci = i - 1 + (q & 1);
-    const int cj = j - 1 + (q >> 1);
-    if (ci < 0 || cj < 0 || ci >= grid.n_xi || cj >= grid.n_eta) continue;
-    cells[q] = grid.cell_of_slot[cj * grid.n_xi + ci];
-  }
-  return cells;
-}
-
 }  // namespace
 
-ImplicitViscosity::ImplicitViscosity(const FilmGrid& grid) {
-  for (int j = 0; j <= grid.n_eta; ++j) {
-    for (int i = 0; i <= grid.n_xi; ++i) {
-      const std::array<int, 4> cells = cells_around(grid, i, j);
-      if (*std::min_element(cells.begin(), cells.end()) < 0) continue;
-      const InnerVertex vertex{cells,
-                               grid.edge_of_side[cells[0]][kHighXi],
-                               grid.edge_of_side[cells[1]][kHighEta],
-                               grid.edge_of_side[cells[2]][kHighXi],
-                               grid.edge_of_side[cells[0]][kHighEta],
-                               0.0};
-      if (std::min({vertex.low, vertex.right, vertex.high, vertex.left}) >= 0) vertices_.push_back(vertex);
-    }
-  }
-}
+ImplicitViscosity::ImplicitViscosity(const FilmGrid& grid) : system_(grid) {}
 
 Eigen::VectorXd ImplicitViscosity::advance(const FilmGrid& grid, const FilmMetric& metric, const Fat& fat,
                                            const Eigen::VectorXd& cell_thickness, const Eigen::VectorXd& edge_thickness,
@@ -60,99 +32,30 @@ void ImplicitViscosity::advance(const FilmGrid& grid, const FilmMetric& metric, 
     damped_thickness_[e] = thickness_[e] * damping;
     next[e] = velocity[e] / damping;
   }
-  set_system(grid, metric, fat, cell_thickness, dt);
+  system_.set_metric(grid, metric);
+  scale_forms(grid, system_.unit_mass(), thickness_, root_, mass_);
+  system_.set(grid, metric, damped_thickness_, cell_thickness, dt * fat.viscosity / fat.density);
   right_side_.setZero(grid.n_edges());
   add_flux_of_forms(grid, mass_, velocity, right_side_);
-  solve(grid, right_side_, next);
+  solve(grid, next);
   next = (edge_thickness.array() > 0.0).select(next, 0.0);
 }
 
-void ImplicitViscosity::set_system(const FilmGrid& grid, const FilmMetric& metric, const Fat& fat,
-                                   const Eigen::VectorXd& cell_thickness, double dt) {
-  compute_unit_mass_forms(grid, metric, unit_mass_);
-  scale_forms(grid, unit_mass_, thickness_, root_, mass_);
-  scale_forms(grid, unit_mass_, damped_thickness_, root_, damped_mass_);
-  const double scale = dt * fat.viscosity / fat.density;
-  over_area_ = scale * cell_thickness.cwiseQuotient(metric.area);
-  for (InnerVertex& vertex : vertices_) {
-    double area = 0.0;
-    double volume = 0.0;
-    for (int q = 0; q < 4; ++q) {
-      const int cell = vertex.cells[q];
-      const double quarter = 0.25 * metric.quadrants[cell][3 - q].sqrt_g;
-      area += quarter;
-      volume += quarter * cell_thickness[cell];
-    }
-    vertex.thickness_over_area = scale * volume / (area * area);
-  }
-  set_diagonal(grid);
-}
-
-/// Sets the diagonals of the system and of the momentum; the last term takes only the diagonal of
-/// M(1).
-void ImplicitViscosity::set_diagonal(const FilmGrid& grid) {
-  diagonal_.setZero(grid.n_edges());
-  momentum_.setZero(grid.n_edges());
-  double* const of_system = diagonal_.data();
-  double* const of_mass = momentum_.data();
-  for (int cell = 0; cell < grid.n_cells(); ++cell) {
-    for (int q = 0; q < 4; ++q) {
-      const QuadrantEdges edges = quadrant_edges(grid, cell, q);
-      if (edges.xi >= 0) of_system[edges.xi] += damped_mass_[cell][q].w11;
-      if (edges.xi >= 0) of_mass[edges.xi] += unit_mass_[cell][q].w11;
-      if (edges.eta >= 0) of_system[edges.eta] += damped_mass_[cell][q].w22;
-      if (edges.eta >= 0) of_mass[edges.eta] += unit_mass_[cell][q].w22;
-    }
-  }
-  for (int e = 0; e < grid.n_edges(); ++e) {
-    of_system[e] += over_area_[grid.edges[e].left] + over_area_[grid.edges[e].right];
-  }
-  for (const InnerVertex& vertex : vertices_) {
-    for (const int e : {vertex.low, vertex.right, vertex.high, vertex.left}) {
-      of_system[e] += vertex.thickness_over_area * of_mass[e] * of_mass[e];
-    }
-  }
-}
-
-void ImplicitViscosity::multiply(const FilmGrid& grid, const Eigen::VectorXd& u, Eigen::VectorXd& product) {
-  product.setZero(grid.n_edges());
-  add_flux_of_forms(grid, damped_mass_, u, product);
-
-  compute_outflow(grid, u, outflow_);
-  outflow_.array() *= over_area_.array();
-  for (int e = 0; e < grid.n_edges(); ++e) {
-    product.data()[e] += outflow_.data()[grid.edges[e].left] - outflow_.data()[grid.edges[e].right];
-  }
-
-  momentum_.setZero(grid.n_edges());
-  add_flux_of_forms(grid, unit_mass_, u, momentum_);
-  curl_.setZero(grid.n_edges());
-  double* const curl = curl_.data();
-  for (const InnerVertex& v : vertices_) {
-    const double* m = momentum_.data();
-    const double circulation = v.thickness_over_area * (m[v.low] + m[v.right] - m[v.high] - m[v.left]);
-    curl[v.low] += circulation;
-    curl[v.right] += circulation;
-    curl[v.high] -= circulation;
-    curl[v.left] -= circulation;
-  }
-  add_flux_of_forms(grid, unit_mass_, curl_, product);
-}
-
-/// Improves `u`.
-void ImplicitViscosity::solve(const FilmGrid& grid, const Eigen::VectorXd& right_side, Eigen::VectorXd& u) {
-  multiply(grid, u, product_);
-  residual_ = right_side - product_;
-  scaled_ = residual_.cwiseQuotient(diagonal_);
+/// Improves `u` by conjugate gradients, preconditioned by the diagonal.
+void ImplicitViscosity::solve(const FilmGrid& grid, Eigen::VectorXd& u) {
+  const Eigen::VectorXd& diagonal = system_.diagonal();
+  system_.multiply(grid, u, product_);
+  residual_ = right_side_ - product_;
+  scaled_ = residual_.cwiseQuotient(diagonal);
   direction_ = scaled_;
   double error = residual_.dot(scaled_);
-  const double target = kTolerance * kTolerance * right_side.cwiseProduct(right_side).cwiseQuotient(diagonal_).sum();
+  const double target = kTolerance * kTolerance * right_side_.cwiseProduct(right_side_).cwiseQuotient(diagonal).sum();
   for (int k = 0; k < kMaxIterationsAnEdge * grid.n_edges() && error > target; ++k) {
-    multiply(grid, direction_, product_);
+    system_.multiply(grid, direction_, product_);
     const double length = error / direction_.dot(product_);
     u += length * direction_;
     residual_ -= length * product_;
-    scaled_ = residual_.cwiseQuotient(diagonal_);
+    scaled_ = residual_.cwiseQuotient(diagonal);
     const double last = error;
     error = residual_.dot(scaled_);
     direction_ = scaled_ + (error / last) * direction_;

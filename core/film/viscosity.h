@@ -1,13 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <vector>
 
 #include "core/film/edge_operators.h"
 #include "core/film/film_grid.h"
 #include "core/film/film_metric.h"
 #include "core/film/rheology.h"
+#include "core/film/viscous_system.h"
 
 namespace lipofill::film {
 
@@ -20,8 +19,8 @@ namespace lipofill::film {
 ///     [M(h (1 + 12 nu dt/h^2)) + dt nu (D^T (h/a) D + M(1) K^T (h/a_v) K M(1))] U' = M(h) U
 ///
 /// with D the net outflow of cells, K the circulation around vertices and M the kinetic metric of
-/// edge_operators.h. Sealed edges are free-slip side walls. First order in time, second in space on
-/// smooth charts, orthogonal or not.
+/// edge_operators.h: the matrix is a ViscousSystem. Sealed edges are free-slip side walls. First
+/// order in time, second in space on smooth charts, orthogonal or not.
 ///
 /// Solved by conjugate gradients, preconditioned by the diagonal, from what friction alone would
 /// leave, to 1e-13 in the norm of the inverse diagonal. With friction that is a few iterations;
@@ -43,26 +42,11 @@ class ImplicitViscosity {
                           const Eigen::VectorXd& velocity, double dt);
 
  private:
-  /// A vertex whose four edges are open.
-  struct InnerVertex {
-    std::array<int, 4> cells;    ///< the index is (side of xi) + 2 (side of eta)
-    int low, right, high, left;  ///< edges, in the sense of circulation
-    double thickness_over_area;  ///< dt nu h/a_v of the step, h the mean of the cells around
-  };
-  void set_system(const FilmGrid& grid, const FilmMetric& metric, const Fat& fat, const Eigen::VectorXd& cell_thickness,
-                  double dt);
-  void set_diagonal(const FilmGrid& grid);
-  void multiply(const FilmGrid& grid, const Eigen::VectorXd& u, Eigen::VectorXd& product);
-  void solve(const FilmGrid& grid, const Eigen::VectorXd& right_side, Eigen::VectorXd& u);
+  void solve(const FilmGrid& grid, Eigen::VectorXd& u);
 
-  std::vector<InnerVertex> vertices_;
-  QuadrantForms unit_mass_;
-  QuadrantForms damped_mass_;
-  QuadrantForms mass_;
+  ViscousSystem system_;
+  QuadrantForms mass_;                                   ///< M(h)
   Eigen::VectorXd thickness_, damped_thickness_, root_;  ///< an edge
-  Eigen::VectorXd over_area_;                            ///< dt nu h/a (n_cells)
-  Eigen::VectorXd diagonal_;                             ///< near that of the system (n_edges)
-  Eigen::VectorXd outflow_, momentum_, curl_;            ///< a product works in them
   Eigen::VectorXd right_side_, residual_, scaled_, direction_, product_;
 };
 

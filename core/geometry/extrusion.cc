@@ -49,7 +49,7 @@ int layer_of_level(const LayeredGrid& grid, int level) {
   return layer;
 }
 
-/// Tries normals smoothed over longer and longer lengths and keeps the first that gives well-shaped
+/// Tries normals smoothed over longer and longer lengths and takes the first that gives well-shaped
 /// hexahedra, or the best.
 WorstHexahedron extrude_along_smoothed_normals(const Eigen::MatrixXd& depth, const Eigen::Vector2d& spacing,
                                                LayeredGrid& grid) {
@@ -88,8 +88,7 @@ absl::StatusOr<LayeredGrid> extrude_layers(const Eigen::Matrix3Xd& skin, int n_x
   if (worst.scaled_jacobian >= kSmallestScaledJacobian) return grid;
   return absl::FailedPreconditionError(
       absl::StrFormat("layers[%d] folds where the face curves: scaled Jacobian %.3f near (%.1f, %.1f, %.1f) mm, must "
-                      "be at least %.1f; make the "
-                      "layers thinner or move the corners",
+                      "be at least %.1f; make the layers thinner there or take another region",
                       layer_of_level(grid, worst.level), worst.scaled_jacobian, worst.centre.x() * 1e3,
                       worst.centre.y() * 1e3, worst.centre.z() * 1e3, kSmallestScaledJacobian));
 }

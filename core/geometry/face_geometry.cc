@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "core/base/field_violations.h"
 #include "core/geometry/extrusion.h"
 #include "core/geometry/scan_region.h"
@@ -113,6 +114,7 @@ void find_riders(const ScanRegion& region, const std::vector<bool>& is_vertex_ne
     if (cleaned >= 0 && is_vertex_near[v]) is_near[cleaned] = true;
   }
   const SkinProjection projection(geometry.grid);
+  double squares = 0.0;
   for (int v = 0; v < geometry.scan.n_vertices(); ++v) {
     const int cleaned = region.cleaned_of_scan[v];
     if (cleaned < 0 || !is_near[cleaned]) continue;
@@ -120,7 +122,24 @@ void find_riders(const ScanRegion& region, const std::vector<bool>& is_vertex_ne
     if (!(std::max(std::abs(foot.place.xi - 0.5), std::abs(foot.place.eta - 0.5)) <= 0.5)) continue;
     geometry.riders.push_back({v, foot.place});
     geometry.max_rider_distance = std::max(geometry.max_rider_distance, foot.distance);
+    squares += foot.distance * foot.distance;
   }
+  if (geometry.riders.empty()) return;
+  geometry.rms_rider_distance = std::sqrt(squares / static_cast<double>(geometry.riders.size()));
+  if (geometry.rms_rider_distance <= kRoughScan) return;
+  geometry.cautions.push_back(
+      absl::StrFormat("The scan is rough: its vertices lie %.2f mm (rms) off the smoothed skin, %.2f mm at most.",
+                      geometry.rms_rider_distance * 1e3, geometry.max_rider_distance * 1e3));
+}
+
+/// The chart between the corners, or around the footprints with what there is to say of it.
+absl::StatusOr<RegionChart> chart_scan_region(const ScanRegion& region, const FaceGeometrySpec& spec,
+                                              std::vector<std::string>& cautions) {
+  if (!region.around) return chart_region(region.patch, spec.n_xi, spec.n_eta);
+  auto around = chart_around(region.patch, *region.around, spec.n_xi, spec.n_eta);
+  if (!around.ok()) return around.status();
+  cautions.insert(cautions.end(), around->remarks.begin(), around->remarks.end());
+  return std::move(around->chart);
 }
 
 absl::StatusOr<FaceGeometry> build_scan_region(const ScanRegionSpec& scan, const FaceGeometrySpec& spec,
@@ -128,7 +147,7 @@ absl::StatusOr<FaceGeometry> build_scan_region(const ScanRegionSpec& scan, const
   auto region = find_scan_region(scan, progress);
   if (!region.ok()) return region.status();
   if (const absl::Status go = report(progress, 0.6, "charting the skin"); !go.ok()) return go;
-  auto chart = chart_region(region->patch, spec.n_xi, spec.n_eta);
+  auto chart = chart_scan_region(*region, spec, region->cautions);
   if (!chart.ok()) return chart.status();
   Eigen::Matrix3Xd& skin = chart->points;
   const Eigen::Vector2d spacing = compute_mean_spacing(spec.n_xi, spec.n_eta, skin);
@@ -143,6 +162,7 @@ absl::StatusOr<FaceGeometry> build_scan_region(const ScanRegionSpec& scan, const
   geometry.axes = region->axes;
   geometry.landmarks = scan.landmarks;
   geometry.scan_remarks = region->remarks;
+  geometry.cautions = region->cautions;
   geometry.skin_area = compute_skin_area(geometry.grid);
   if (const absl::Status go = report(progress, 0.9, "placing the scan on the skin"); !go.ok()) return go;
   find_riders(*region, chart->is_vertex_near, geometry);

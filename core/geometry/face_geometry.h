@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/geometry/footprint.h"
 #include "core/geometry/head_axes.h"
 #include "core/geometry/layered_grid.h"
 #include "core/geometry/scalar_field.h"
@@ -41,12 +42,15 @@ struct SquareSpec {
   double length_eta = 0.0;  ///< [m]
 };
 
-/// A quadrilateral region of the outer skin of a scan.
+/// A quadrilateral region of the outer skin of a scan, between corners or around footprints.
 struct ScanRegionSpec {
   SurfaceMesh scan;  ///< is as it was read: cleaning is part of building
   Landmarks landmarks;
   std::optional<HeadAxes> axes;      ///< estimated from the landmarks when absent
   std::array<SkinPoint, 4> corners;  ///< (xi, eta) = (0,0), (1,0), (1,1), (0,1); no ChartPoint
+  /// In place of corners, where there are any: the region is a rectangle around them.
+  std::vector<Footprint> footprints;
+  double margin = 0.0;  ///< of skin around the footprints, wanted on every side [m]
 };
 
 struct LayerGeometry {
@@ -68,6 +72,10 @@ struct Rider {
   ChartPoint place;
 };
 
+/// Distance of a scan's vertices from the smoothed skin above which its noise shows in results, and
+/// may be to blame for hexahedra that fold [m rms].
+inline constexpr double kRoughScan = 0.35e-3;
+
 /// A region of skin, charted and extruded.
 struct FaceGeometry {
   LayeredGrid grid;
@@ -77,7 +85,11 @@ struct FaceGeometry {
   Landmarks landmarks;
   double skin_area = 0.0;                 ///< [m2]
   double max_rider_distance = 0.0;        ///< [m]  from the resampled skin
+  double rms_rider_distance = 0.0;        ///< [m]
   std::vector<std::string> scan_remarks;  ///< what cleaning did, a sentence each
+  /// What is unusual about scan, landmarks and region, a sentence each with its figure: to know
+  /// before relying on it.
+  std::vector<std::string> cautions;
 };
 
 /// Reports how far a build is, in [0, 1], and what it is doing. Returning false asks it to stop
@@ -104,8 +116,10 @@ absl::Status check_face_geometry(const FaceGeometrySpec& spec);
 /// FAILED_PRECONDITION where they fold, and INVALID_ARGUMENT as check_layers.
 absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& geometry);
 
-/// The chart place of a skin point. INVALID_ARGUMENT (field violation "") when it names an unknown
-/// landmark, lies more than 10 mm from the outer skin, or is outside the region by more than 1e-6.
+/// The chart place of a skin point: the nearest on the skin, or for a point given by landmarks that
+/// lies deeper than 10 mm the one along the outward normal. INVALID_ARGUMENT (field violation "")
+/// when it names an unknown landmark, lies farther from the outer skin, or is outside the region by
+/// more than 1e-6.
 absl::StatusOr<ChartPoint> locate_in_chart(const FaceGeometry& geometry, const SkinPoint& point);
 
 /// Position on the undeformed skin [m], bilinear between nodes.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace lipofill::geometry {
@@ -73,6 +74,17 @@ void take_in_islands(const SurfaceMesh& mesh, const Across& across, const std::v
   }
 }
 
+std::vector<int> find_triangles_within(const SurfaceMesh& mesh, const Ball& ball) {
+  std::vector<int> candidates;
+  for (int t = 0; t < mesh.n_triangles(); ++t) {
+    const auto& triangle = mesh.triangles[t];
+    const bool near = std::any_of(triangle.begin(), triangle.end(),
+                                  [&](int v) { return (mesh.points.col(v) - ball.centre).norm() <= ball.radius; });
+    if (near) candidates.push_back(t);
+  }
+  return candidates;
+}
+
 }  // namespace
 
 std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across, const RayTree& rays,
@@ -88,6 +100,14 @@ std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across,
   }
   take_in_islands(mesh, across, is_candidate, outer);
   return outer;
+}
+
+SubSurface extract_outer_skin(const SurfaceMesh& mesh, const Ball& ball) {
+  const std::vector<int> candidates = find_triangles_within(mesh, ball);
+  const std::vector<bool> outer = find_outer_skin(mesh, find_neighbours(mesh).across, RayTree(mesh), candidates);
+  std::vector<int> skin;
+  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(skin), [&](int t) { return outer[t]; });
+  return extract_triangles(mesh, skin);
 }
 
 bool is_inside_out(const SurfaceMesh& mesh) {

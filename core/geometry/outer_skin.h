@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "core/geometry/ray_tree.h"
@@ -17,6 +18,15 @@ namespace lipofill::geometry {
 /// Checked by tests/unit/geometry/chart_test.cc.
 std::vector<bool> find_outer_skin(const SurfaceMesh& mesh, const Across& across, const RayTree& rays,
                                   const std::vector<int>& candidates);
+
+/// A ball in which the skin of a region lies.
+struct Ball {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 0.0;  ///< [m]
+};
+
+/// The outer skin with a vertex in a ball, as a surface of its own.
+SubSurface extract_outer_skin(const SurfaceMesh& mesh, const Ball& ball);
 
 /// True when the surface is turned inside out: where it reaches farthest in a direction its normal
 /// must point that way, by the sum over 98 directions. Inner surfaces reach nowhere farthest, so

@@ -117,7 +117,7 @@ absl::Status check_joined(const std::array<double, 4>& at_corner) {
                          "lie on pieces of outer skin that do not hang together; all four must be on one");
 }
 
-/// Triangles with a vertex within the bound, the part of them that holds the first corner.
+/// Triangles with a vertex whose value is within the bound, the part of them that holds the seed.
 std::vector<int> select_triangles(const SurfaceMesh& skin, const std::vector<double>& sum, double bound, int seed) {
   const auto within = [&](int t) {
     const auto& c = skin.triangles[t];
@@ -198,7 +198,37 @@ void fill_small_holes(RegionPatch& patch) {
   }
 }
 
+absl::Status check_size(const SurfaceMesh& patch) {
+  if (patch.n_vertices() <= kMaxPatchVertices) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat("the scan has ", patch.n_vertices(),
+                                                    " vertices around the region, must have at most ",
+                                                    kMaxPatchVertices, ": decimate it first"));
+}
+
+/// How far each vertex lies beyond the nearest disc; not positive within.
+std::vector<double> compute_distances_beyond(const SurfaceMesh& skin, const std::vector<SkinDisc>& discs) {
+  const VertexGraph graph = make_vertex_graph(skin);
+  std::vector<double> beyond(skin.n_vertices(), kUnreached);
+  for (const SkinDisc& disc : discs) {
+    const std::vector<double> distance =
+        compute_edge_distances(skin, graph, disc.centre.position, find_vertices_around(skin, disc.centre));
+    for (int v = 0; v < skin.n_vertices(); ++v) beyond[v] = std::min(beyond[v], distance[v] - disc.radius);
+  }
+  return beyond;
+}
+
 }  // namespace
+
+absl::StatusOr<RegionPatch> cut_patch_around(const SurfaceMesh& skin, const std::vector<SkinDisc>& discs) {
+  const std::vector<double> beyond = compute_distances_beyond(skin, discs);
+  SubSurface part = extract_triangles(skin, select_triangles(skin, beyond, 0.0, discs.front().centre.triangle));
+  if (const absl::Status size = check_size(part.mesh); !size.ok()) return size;
+  RegionPatch patch;
+  patch.mesh = std::move(part.mesh);
+  patch.whole_of_vertex = std::move(part.whole_of_vertex);
+  fill_small_holes(patch);
+  return patch;
+}
 
 absl::StatusOr<RegionPatch> cut_region_patch(const SurfaceMesh& skin, const std::array<SurfacePoint, 4>& corners) {
   std::array<double, 4> at_corner{};
@@ -207,11 +237,7 @@ absl::StatusOr<RegionPatch> cut_region_patch(const SurfaceMesh& skin, const std:
   if (!joined.ok()) return joined;
   const double bound = kSpare * *std::max_element(at_corner.begin(), at_corner.end()) + 4 * kSpareLength;
   SubSurface part = extract_triangles(skin, select_triangles(skin, sum, bound, corners[0].triangle));
-  if (part.mesh.n_vertices() > kMaxPatchVertices) {
-    return absl::FailedPreconditionError(absl::StrCat("the scan has ", part.mesh.n_vertices(),
-                                                      " vertices around the region, must have at most ",
-                                                      kMaxPatchVertices, ": decimate it first"));
-  }
+  if (const absl::Status size = check_size(part.mesh); !size.ok()) return size;
   RegionPatch patch;
   patch.corners = corners;
   for (size_t k = 0; k < corners.size(); ++k) {

@@ -27,4 +27,15 @@ struct RegionPatch {
 /// separate pieces of skin or out of bounds.
 absl::StatusOr<RegionPatch> cut_region_patch(const SurfaceMesh& skin, const std::array<SurfacePoint, 4>& corners);
 
+/// A disc of skin, its radius measured along the surface.
+struct SkinDisc {
+  SurfacePoint centre;
+  double radius = 0.0;  ///< [m]
+};
+
+/// The skin within the discs (along edges of the scan, which are up to 1.2 times too long), the
+/// part of it that holds the centre of the first; its corners are of no meaning.
+/// FAILED_PRECONDITION when there is too much of it.
+absl::StatusOr<RegionPatch> cut_patch_around(const SurfaceMesh& skin, const std::vector<SkinDisc>& discs);
+
 }  // namespace lipofill::geometry

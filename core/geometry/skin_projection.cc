@@ -35,8 +35,8 @@ CellPoint evaluate(const LayeredGrid& grid, const Cell& cell, double r, double s
   return point;
 }
 
-/// Local coordinates of the foot of a point in a cell continued bilinearly. Kept near the cell: far
-/// out, a bilinear cell turns over.
+/// Local coordinates of the foot of a point in a cell continued bilinearly. It stays near the cell:
+/// far out, a bilinear cell turns over.
 Eigen::Vector2d find_foot(const LayeredGrid& grid, const Cell& cell, const Eigen::Vector3d& point, Eigen::Vector2d rs) {
   constexpr int kMaxIterations = 20;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -150,7 +150,13 @@ absl::StatusOr<ChartPoint> locate_in_chart(const FaceGeometry& geometry, const S
   } else {
     const auto position = resolve_position(point, geometry.landmarks, geometry.axes);
     if (!position.ok()) return position.status();
-    const SkinFoot foot = SkinProjection(geometry.grid).project(*position);
+    const SkinProjection projection(geometry.grid);
+    SkinFoot foot = projection.project(*position);
+    if (foot.distance > kFarthestFromSkin && std::holds_alternative<LandmarkPoint>(point)) {
+      // A mean of landmarks may lie deep under the skin.
+      if (const auto reached = SkinReach(projection.facets()).reach(*position))
+        foot = projection.project(reached->position);
+    }
     place = foot.place;
     const bool over_the_region = std::max(std::abs(place.xi - 0.5), std::abs(place.eta - 0.5)) <= 0.5 + kRimTolerance;
     if (over_the_region && foot.distance > kFarthestFromSkin) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/geometry/face_geometry.h"
+#include "core/geometry/skin_reach.h"
 #include "core/geometry/surface_locator.h"
 
 namespace lipofill::geometry {
@@ -21,6 +22,9 @@ class SkinProjection {
   explicit SkinProjection(const LayeredGrid& grid);
   SkinFoot project(const Eigen::Vector3d& point) const;
 
+  /// Two triangles a cell of the grid.
+  const SurfaceMesh& facets() const { return facets_; }
+
  private:
   const LayeredGrid& grid_;
   SurfaceMesh facets_;
@@ -32,8 +36,5 @@ class SkinProjection {
 /// number, a value that is not finite, and for a ChartPoint.
 absl::StatusOr<Eigen::Vector3d> resolve_position(const SkinPoint& point, const Landmarks& landmarks,
                                                  const HeadAxes& axes);
-
-/// Farthest a point may lie from the skin it is projected to [m].
-inline constexpr double kFarthestFromSkin = 0.010;
 
 }  // namespace lipofill::geometry

@@ -29,8 +29,8 @@ absl::StatusOr<RegionChart> chart_region(const RegionPatch& patch, int n_xi, int
 ///     |P - P0|^2 + s^4 integral (|P_xx|^2 + 2 |P_xy|^2 + |P_yy|^2)
 ///
 /// (thin plate), x and y the lengths along the grid's lines, with natural borders, so that features
-/// shorter than about 4 s fade and flat regions keep their places exactly. Second order in s on a
-/// smooth surface.
+/// shorter than about 4 s fade and flat regions stay in their places exactly. Second order in s on
+/// a smooth surface.
 /// @param values  (rows, (n_xi + 1) * (n_eta + 1)), smoothed in place
 /// @param spacing mean distance of grid points along xi and eta [m]
 /// @param length  s [m]

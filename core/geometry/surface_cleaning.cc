@@ -90,15 +90,15 @@ double smoothness_across(const SurfaceMesh& mesh, const EdgeUse& a, const EdgeUs
 /// Marks all triangles at an over-full edge but the pair that continue each other best.
 void mark_surplus(const SurfaceMesh& mesh, const EdgeUse* uses, size_t n, std::vector<bool>& surplus) {
   double best = -2.0;
-  std::pair<size_t, size_t> keep{0, 1};
+  std::pair<size_t, size_t> smoothest{0, 1};
   for (size_t a = 0; a < n; ++a) {
     for (size_t b = a + 1; b < n; ++b) {
       const double smoothness = smoothness_across(mesh, uses[a], uses[b]);
-      if (smoothness > best) best = smoothness, keep = {a, b};
+      if (smoothness > best) best = smoothness, smoothest = {a, b};
     }
   }
   for (size_t k = 0; k < n; ++k) {
-    if (k != keep.first && k != keep.second) surplus[uses[k].triangle] = true;
+    if (k != smoothest.first && k != smoothest.second) surplus[uses[k].triangle] = true;
   }
 }
 

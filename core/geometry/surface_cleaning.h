@@ -16,8 +16,8 @@ struct CleanedSurface {
 };
 
 /// Cleans a scan. A speck is a part of less than 2 % of the area of the largest part. At an edge of
-/// more than two triangles the two that continue each other most smoothly are kept. The mesh may
-/// come out empty. Deterministic.
+/// more than two triangles the two that continue each other most smoothly stay. The mesh may come
+/// out empty. Deterministic.
 /// Checked by tests/unit/geometry/surface_cleaning_test.cc.
 CleanedSurface clean_surface(const SurfaceMesh& scan);
 

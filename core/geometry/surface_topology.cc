@@ -156,12 +156,6 @@ bool is_degenerate(const SurfaceMesh& mesh, const std::array<int, 3>& triangle) 
   return !(0.5 * compute_area_vector(mesh, triangle).norm() > kSmallestArea);
 }
 
-double compute_area(const SurfaceMesh& mesh) {
-  double area = 0.0;
-  for (const auto& triangle : mesh.triangles) area += 0.5 * compute_area_vector(mesh, triangle).norm();
-  return area;
-}
-
 Eigen::Matrix3Xd compute_vertex_normals(const SurfaceMesh& mesh) {
   Eigen::Matrix3Xd normals = Eigen::Matrix3Xd::Zero(3, mesh.n_vertices());
   for (const auto& triangle : mesh.triangles) {

@@ -54,9 +54,6 @@ bool is_degenerate(const SurfaceMesh& mesh, const std::array<int, 3>& triangle);
 /// Twice the area times the outward normal [m2].
 Eigen::Vector3d compute_area_vector(const SurfaceMesh& mesh, const std::array<int, 3>& triangle);
 
-/// Area of the surface [m2].
-double compute_area(const SurfaceMesh& mesh);
-
 /// Normals of the vertices, weighted by the angles of the triangles around them; zero where no
 /// triangle is.
 Eigen::Matrix3Xd compute_vertex_normals(const SurfaceMesh& mesh);

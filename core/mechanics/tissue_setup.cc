@@ -105,7 +105,7 @@ HeldMesh hold_mesh(const model::FaceModel& model, const std::vector<plan::FilmLa
   std::vector<std::vector<bool>> open(grid.n_levels());
   for (const plan::FilmLayout& film : films) {
     if (film.wall != plan::FilmWallKind::kTissue) continue;
-    const std::vector<bool> of_film = plan::find_open_nodes(grid, film);
+    const std::vector<bool>& of_film = film.bond.open;
     std::vector<bool>& level = open[film.level];
     if (level.empty()) level.assign(grid.nodes_per_level(), false);
     for (size_t s = 0; s < of_film.size(); ++s) level[s] = level[s] || of_film[s];
@@ -138,7 +138,8 @@ absl::StatusOr<TissueSetup> set_up_tissue(const model::FaceModel& model, const s
                                           fibres->springs);
   });
   if (!structure.ok()) return structure.status();
-  auto tissue = solid::Tissue::create(*std::move(structure), {spec.damping_mass, spec.damping_stiffness});
+  auto tissue = solid::Tissue::create(*std::move(structure), solid::youngs_moduli_of(materials),
+                                      {spec.damping_mass, spec.damping_stiffness});
   if (!tissue.ok()) return tissue.status();
   return TissueSetup{*std::move(tissue), std::move(held.walls), std::move(held.skin_nodes),
                      std::move(fibres->ligaments), std::move(key)};

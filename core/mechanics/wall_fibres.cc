@@ -158,21 +158,20 @@ std::vector<double> share_area(const geometry::LayeredGrid& grid, const coupling
   return area;
 }
 
-void add_connective_tissue(const model::FaceModel& model, const FilmOnTissue& film, const solid::HexMesh& mesh,
-                           WallFibres& fibres) {
+/// Connective tissue and the attachment at the edge of zones: both hold the two copies of an open
+/// node together.
+void add_fibres_of_nodes(const model::FaceModel& model, const FilmOnTissue& film, const solid::HexMesh& mesh,
+                         WallFibres& fibres) {
   const double stiffness = film.film->connective_tissue.stiffness;
-  if (stiffness <= 0.0) return;
-  const std::vector<bool> open = plan::find_open_nodes(model.geometry.grid, *film.film);
+  const std::vector<bool>& open = film.film->bond.open;
   const std::vector<double> area = share_area(model.geometry.grid, *film.nodes, mesh);
   for (size_t place = 0; place < open.size(); ++place) {
     const int outer = film.nodes->outer[place];
     const int inner = film.nodes->inner[place];
-    if (!open[place] || outer == inner) continue;
-    fibres.springs.push_back({{outer, outer, outer, outer},
-                              {inner, inner, inner, inner},
-                              {1.0, 0.0, 0.0, 0.0},
-                              stiffness * area[place],
-                              0.0});
+    const double of_node = stiffness * area[place] + film.film->bond.stiffness[place];
+    if (!open[place] || outer == inner || of_node <= 0.0) continue;
+    fibres.springs.push_back(
+        {{outer, outer, outer, outer}, {inner, inner, inner, inner}, {1.0, 0.0, 0.0, 0.0}, of_node, 0.0});
   }
 }
 
@@ -198,7 +197,7 @@ absl::StatusOr<WallFibres> place_wall_fibres(const model::FaceModel& model, cons
     placer.place(ligaments[k], field, violations);
   }
   if (!violations.empty()) return violations.to_status();
-  for (const FilmOnTissue& film : films) add_connective_tissue(model, film, mesh, fibres);
+  for (const FilmOnTissue& film : films) add_fibres_of_nodes(model, film, mesh, fibres);
   return fibres;
 }
 

@@ -21,7 +21,8 @@ struct LigamentLayout {
   double breaking_force = 0.0;  ///< each spring breaks at it [N]; infinity: it holds
 };
 
-/// Springs across the films of a tissue: ligaments first, then the fibres of connective tissue.
+/// Springs across the films of a tissue: ligaments first, then the fibres of connective tissue and
+/// of attachments.
 struct WallFibres {
   std::vector<solid::WallSpring> springs;
   std::vector<LigamentLayout> ligaments;
@@ -35,9 +36,10 @@ struct FilmOnTissue {
 
 /// Joins the walls of films: a spring at each point of a ligament, bilinear between the nodes
 /// around it, and one between the two copies of every open node, its stiffness that of connective
-/// tissue times the node's share of area. Field violations are named below "ligaments[index]".
-/// Checked by tests/verification/coupling/ligament_test.cc and
-/// tests/unit/simulation/anatomy_input_test.cc.
+/// tissue times the node's share of area and that of the attachment at the edge of the zones
+/// (plan/zone_bond.h).
+/// Field violations are named below "ligaments[index]". Checked by
+/// tests/verification/coupling/ligament_test.cc and tests/unit/simulation/anatomy_input_test.cc.
 absl::StatusOr<WallFibres> place_wall_fibres(const model::FaceModel& model, const std::vector<FilmOnTissue>& films,
                                              const std::vector<plan::LigamentSpec>& ligaments,
                                              const solid::HexMesh& mesh);

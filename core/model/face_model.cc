@@ -5,11 +5,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "core/base/field_violations.h"
 #include "core/base/hash.h"
 #include "core/base/units.h"
 #include "core/model/face_model_check.h"
 #include "core/model/layer_thickness.h"
+#include "core/model/region_footprints.h"
 
 namespace lipofill::model {
 namespace {
@@ -41,7 +43,7 @@ void add_matrix(Hasher& hasher, const Eigen::Matrix3Xd& matrix) {
   hasher.add_bytes(matrix.data(), static_cast<size_t>(matrix.size()) * sizeof(double));
 }
 
-/// Adds the prestress to the hash, at the end and only if there is one: a model without keeps the
+/// Adds the prestress to the hash, at the end and only if there is one: a model without has the
 /// hash it had before layers had a prestress.
 void add_prestress(Hasher& hasher, const std::vector<TissueLayerSpec>& layers) {
   const auto is_tense = [](const TissueLayerSpec& layer) { return layer.material.prestress != 0.0; };
@@ -87,9 +89,16 @@ std::string compute_content_hash(const FaceModel& model) {
   return hasher.hex_digest();
 }
 
-geometry::FaceGeometrySpec make_geometry_spec(const FaceModelSpec& spec) {
+absl::StatusOr<geometry::FaceGeometrySpec> make_geometry_spec(const FaceModelSpec& spec) {
   geometry::FaceGeometrySpec geometry_spec;
   geometry_spec.region = spec.region;
+  if (spec.around) {
+    auto& scan = std::get<geometry::ScanRegionSpec>(geometry_spec.region);
+    auto footprints = find_footprints(scan, *spec.around);
+    if (!footprints.ok()) return footprints.status();
+    scan.footprints = *std::move(footprints);
+    scan.margin = spec.around->margin;
+  }
   geometry_spec.n_xi = spec.n_xi;
   geometry_spec.n_eta = spec.n_eta;
   for (const TissueLayerSpec& layer : spec.layers) {
@@ -105,20 +114,37 @@ geometry::FaceGeometrySpec make_geometry_spec(const FaceModelSpec& spec) {
 /// The charted skin, without the layers: their thickness depends on where they lie. Everything
 /// wrong with the layers is told before the scan is worked on.
 absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec, const geometry::Progress& progress) {
-  geometry::FaceGeometrySpec geometry_spec = make_geometry_spec(spec);
-  if (const absl::Status valid = geometry::check_face_geometry(geometry_spec); !valid.ok()) return valid;
-  geometry_spec.layers.clear();
-  return geometry::build_face_geometry(geometry_spec, [&progress](double fraction, const char* stage) {
+  auto geometry_spec = make_geometry_spec(spec);
+  if (!geometry_spec.ok()) return geometry_spec.status();
+  if (const absl::Status valid = geometry::check_face_geometry(*geometry_spec); !valid.ok()) return valid;
+  geometry_spec->layers.clear();
+  return geometry::build_face_geometry(*geometry_spec, [&progress](double fraction, const char* stage) {
     return !progress || progress(kSkinFraction * fraction, stage);
   });
 }
 
-/// Adds advice to the error when layers fold and their thickness follows the bone: the caller then
-/// has two more parameters to change.
-absl::Status with_advice(const absl::Status& status, const LayerThickness& thickness) {
-  if (!absl::IsFailedPrecondition(status) || !thickness.bone) return status;
-  return absl::FailedPreconditionError(absl::StrCat(
-      status.message(), "; or raise smoothing_mm or lower max_thickness_mm of the layer down to the bone"));
+/// Adds advice to the error when layers fold: what else may be the cause, and what the caller can
+/// change. Over a rough scan the roughness is the first cause to look at; a thickness that follows
+/// the bone has two more parameters.
+absl::Status with_advice(const absl::Status& status, const geometry::FaceGeometry& face,
+                         const LayerThickness& thickness) {
+  if (!absl::IsFailedPrecondition(status)) return status;
+  std::string text(status.message());
+  if (face.rms_rider_distance > geometry::kRoughScan) {
+    text = absl::StrFormat(
+        "the scan is noisy: its vertices lie %.2f mm (rms) off the smoothed skin, %.2f mm at most; smooth it first. "
+        "(%s)",
+        face.rms_rider_distance * kMillimetresPerMetre, face.max_rider_distance * kMillimetresPerMetre, text);
+  }
+  if (thickness.bone) text += "; or raise smoothing_mm or lower max_thickness_mm of the layer down to the bone";
+  return absl::FailedPreconditionError(text);
+}
+
+/// Everything wrong with what the region is to hold is told before the scan is worked on.
+void check_around(const FaceModelSpec& spec, FieldViolations& violations) {
+  if (!spec.around) return;
+  const absl::Status found = find_footprints(std::get<geometry::ScanRegionSpec>(spec.region), *spec.around).status();
+  violations.absorb(absl::IsInvalidArgument(found) ? "" : "scan_region.landmarks_mm", found);
 }
 
 }  // namespace
@@ -136,6 +162,7 @@ absl::Status check_face_model(const FaceModelSpec& spec) {
     check_layer(spec.layers[l], field, violations);
   }
   check_thickness_requests(spec, violations);
+  check_around(spec, violations);
   check_support(spec.rim, "rim", is_square, violations);
   check_support(spec.base, "base", is_square, violations);
   return violations.to_status();
@@ -156,7 +183,9 @@ absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceMode
   for (size_t l = 0; l < spec.layers.size(); ++l) {
     layers.push_back({thickness->fields[l], spec.layers[l].geometry.elements_through});
   }
-  if (const absl::Status laid = geometry::lay_layers(layers, *face); !laid.ok()) return with_advice(laid, *thickness);
+  if (const absl::Status laid = geometry::lay_layers(layers, *face); !laid.ok()) {
+    return with_advice(laid, *face, *thickness);
+  }
 
   model->geometry = *std::move(face);
   model->layers = spec.layers;

@@ -37,6 +37,19 @@ struct TissueLayerSpec {
   std::optional<DownToBone> down_to_bone = std::nullopt;  ///< it takes the place of the thickness
 };
 
+/// A disc of skin that a model is to hold.
+struct AroundDisc {
+  geometry::SkinPoint centre;
+  double radius = 0.0;  ///< [m]
+};
+
+/// What a model is to hold, in place of the corners of its region.
+struct AroundSpec {
+  std::vector<std::string> regions;  ///< named regions of the face
+  std::vector<AroundDisc> discs;
+  double margin = 12e-3;  ///< [m] of skin around them
+};
+
 /// All that a model is made from; lipofill.v1.ModelSpec in SI.
 struct FaceModelSpec {
   std::variant<geometry::SquareSpec, geometry::ScanRegionSpec> region;
@@ -45,7 +58,8 @@ struct FaceModelSpec {
   std::vector<TissueLayerSpec> layers;
   Support rim;
   Support base;
-  std::optional<geometry::SurfaceMesh> bone;  ///< its points are in the frame of the scan
+  std::optional<geometry::SurfaceMesh> bone;  ///< in the frame of the scan
+  std::optional<AroundSpec> around;           ///< of a scan region without corners
 };
 
 /// Thickness of a layer over the nodes of the chart [m].

@@ -20,8 +20,9 @@ void add(Hasher& hasher, const solid::HexMesh& mesh) {
   for (const bool stacked : mesh.stacked) hasher.add(stacked);
 }
 
+/// Young's modulus is left out: it belongs to the tissue, not to its structure.
 void add(Hasher& hasher, const solid::ElasticMaterial& material) {
-  for (const double value : {material.youngs_modulus, material.poisson_ratio, material.density, material.prestress}) {
+  for (const double value : {material.poisson_ratio, material.density, material.prestress}) {
     hasher.add(value);
   }
 }
@@ -60,7 +61,8 @@ std::string key_of_tissue(const solid::HexMesh& mesh, const std::vector<solid::E
 }
 
 std::string key_of_gap(const std::string& tissue_key, const geometry::LayeredGrid& grid,
-                       const coupling::WallNodes& walls, const film::FilmGrid& film) {
+                       const coupling::WallNodes& walls, const film::FilmGrid& film,
+                       const std::vector<film::CellPiece>& pieces) {
   Hasher hasher;
   hasher.add(tissue_key);
   hasher.add(grid.n_xi);
@@ -73,6 +75,10 @@ std::string key_of_gap(const std::string& tissue_key, const geometry::LayeredGri
   hasher.add(film.n_xi);
   hasher.add(film.n_eta);
   hasher.add(film.slot_of_cell);
+  for (const film::CellPiece& piece : pieces) {
+    for (const int place : {piece.cell, piece.quad_i, piece.quad_j}) hasher.add(place);
+    for (const double share : piece.share) hasher.add(share);
+  }
   return hasher.hex_digest();
 }
 

@@ -15,7 +15,8 @@ namespace lipofill::model {
 /// Parts that all simulations of a model share as long as one of them lives: element matrices and
 /// patterns, the places of the gaps on the tissue, the analysis of the factorisation. None of it is
 /// written once it is made, and it is the same whoever makes it first: results do not depend on the
-/// sharing. Thread-safe. Checked by tests/unit/model/shared_parts_test.cc.
+/// sharing. Young's moduli are no part of them, so that tissues of other stiffness share them too.
+/// Thread-safe. Checked by tests/unit/model/shared_parts_test.cc.
 struct SharedParts {
   SharedCache<solid::TissueStructure> tissues;
   SharedCache<coupling::GapGeometry> gaps;
@@ -26,7 +27,8 @@ struct SharedParts {
 std::string key_of_tissue(const solid::HexMesh& mesh, const std::vector<solid::ElasticMaterial>& materials,
                           const solid::NodeSupports& supports, const std::vector<solid::WallSpring>& springs);
 std::string key_of_gap(const std::string& tissue_key, const geometry::LayeredGrid& grid,
-                       const coupling::WallNodes& walls, const film::FilmGrid& film);
+                       const coupling::WallNodes& walls, const film::FilmGrid& film,
+                       const std::vector<film::CellPiece>& pieces);
 /// @param has_pressures  the pressures are in the factorisation
 std::string key_of_analysis(const std::string& tissue_key, const std::vector<std::string>& gap_keys,
                             bool has_pressures);

@@ -4,10 +4,12 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/film/cell_pieces.h"
 #include "core/film/film_grid.h"
 #include "core/film/rheology.h"
 #include "core/model/face_model.h"
 #include "core/plan/simulation_spec.h"
+#include "core/plan/zone_bond.h"
 
 namespace lipofill::plan {
 
@@ -24,24 +26,21 @@ struct FilmLayout {
   geometry::ScalarField initial_thickness;
   film::WalledSlots walled_slots;  ///< they lie on both sides of walls inside zones
   ConnectiveTissueSpec connective_tissue;
+  std::vector<film::CellPiece> pieces;  ///< on the quadrilaterals of the tissue, kTissue only
+  ZoneBond bond;                        ///< of the two walls, kTissue only
+  std::vector<std::string> remarks;     ///< zones that lie on the film in part, a sentence each
 
   int cell_at(const geometry::ChartPoint& place) const;
   geometry::ChartPoint cell_centre(int cell) const;
 };
 
-/// Decides which cells belong to which zone and where in the tissue the film lies. Field violations
-/// are named below "films[index]", values in the units of lipofill.v1.Film.
+/// Decides which cells belong to which zone and where in the tissue the film lies. On a face a
+/// named region or a disc with less than 0.98 of its area on the film is remarked upon, and refused
+/// below 0.6. Field violations are named below "films[index]", values in the units of
+/// lipofill.v1.Film.
 absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmSpec& spec);
-
-/// Middle of a slot of a film's grid, cell or not.
-geometry::ChartPoint slot_centre(const FilmSpec& spec, int slot);
 
 /// Positions on the undeformed skin over the vertices of a film's grid [m] (3, n_vertices).
 Eigen::Matrix3Xd vertices_on_skin(const geometry::LayeredGrid& grid, const film::FilmGrid& film);
-
-/// Flags of the level's nodes that are doubled: all quadrilaterals around the node lie in cells of
-/// one zone, on one side of its walls. The tissue stays bonded along the edges of zones and along
-/// walls.
-std::vector<bool> find_open_nodes(const geometry::LayeredGrid& tissue, const FilmLayout& layout);
 
 }  // namespace lipofill::plan

@@ -8,7 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
 #include "core/base/units.h"
-#include "core/plan/film_layout.h"
+#include "core/plan/zone_placement.h"
 
 namespace lipofill::plan {
 namespace {

@@ -22,7 +22,7 @@ class InjectionSchedule {
 
   /// Volume that each cell of each film receives between `time` and `time + dt`, and notes it as
   /// delivered [m3]. No more is taken out of a cell than nearly all that it holds; the rest stays
-  /// due. Rigid walls keep their film full.
+  /// due. A film between rigid walls stays full.
   /// @param held  volume of fat in a cell of a film now [m3]
   void deliver(const std::vector<FilmLayout>& films, absl::FunctionRef<double(int film, int cell)> held, double time,
                double dt, std::vector<Eigen::VectorXd>& received);

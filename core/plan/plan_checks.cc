@@ -98,6 +98,10 @@ absl::Status check_plan(const SimulationSpec& spec) {
   return violations.to_status();
 }
 
+bool has_placeable_size(const SimulationSpec& spec) {
+  return spec.films.size() <= kMaxFilms && spec.injections.size() <= kMaxInjections && spec.probes.size() <= kMaxProbes;
+}
+
 absl::Status check_room_for_injection(const SimulationSpec& spec) {
   if (spec.injections.size() < kMaxInjections) return absl::OkStatus();
   return absl::ResourceExhaustedError(

@@ -54,6 +54,28 @@ struct ConnectiveTissueSpec {
   double entry_pressure = 0.0;  ///< fat beside the cell enters it above this pressure [Pa]; 0: it is open
 };
 
+/// How the outlines of a film's zones become cells.
+enum class ZoneOutline {
+  kCurve,  ///< as drawn: the outline cuts the cells it crosses
+  kCells,  ///< as the paper has it: the cells whose centres lie inside, whole
+};
+
+/// Tissue that attaches the walls of a film to one another around its zones. Its stiffness per area
+/// grows linearly from 0 on the outline to `stiffness` at a distance of `width`, beyond which the
+/// layers are bonded. Where two zones touch, a septum of the same width and stiffness stands on
+/// their border.
+struct AttachmentSpec {
+  double stiffness = 0.0;  ///< [Pa/m]
+  double width = 0.0;      ///< [m]
+};
+
+/// The edge of a film's zones.
+struct ZoneEdgeSpec {
+  ZoneOutline outline = ZoneOutline::kCurve;
+  bool is_rigid = false;                     ///< bonded from the outline on, as the paper has it
+  std::optional<AttachmentSpec> attachment;  ///< none: bonded on a square, by region on a face (anatomy/zone_edges.h)
+};
+
 struct FilmSpec {
   std::string name;
   std::string below_layer;
@@ -68,6 +90,7 @@ struct FilmSpec {
   double wall_stiffness = 0.0;  ///< [Pa/m], kWinkler only
   std::vector<WallSpec> walls;
   ConnectiveTissueSpec connective_tissue;
+  ZoneEdgeSpec edge;
 };
 
 struct NamedLigament {

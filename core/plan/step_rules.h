@@ -30,8 +30,12 @@ struct StepRules {
   double growth = 2.0;
   int easy_film_iterations = 30;
   int easy_newton_iterations = 4;
-  /// The skin counts as at rest after this many slow steps in a row.
+  /// The skin counts as at rest after this many slow steps in a row, once it has less than this
+  /// share of its lift still to go: thin films and thick fat are slow long before they rest. Below
+  /// the distance, a hundredth of a micrometre, what is still to go is round-off.
   int settled_steps = 5;
+  double settled_share = 0.01;
+  double settled_distance = 1e-8;  ///< [m]
 };
 
 /// Returns the rules of a goal. When only the settled shape matters, a step that converges is easy
@@ -39,7 +43,12 @@ struct StepRules {
 /// possible while the skin comes to rest tell as much as five short ones.
 inline StepRules rules_of(TimeGoal goal) {
   if (goal == TimeGoal::kTransient) return {};
-  return {4.0, std::numeric_limits<int>::max(), 8, 2};
+  StepRules rules;
+  rules.growth = 4.0;
+  rules.easy_film_iterations = std::numeric_limits<int>::max();
+  rules.easy_newton_iterations = 8;
+  rules.settled_steps = 2;
+  return rules;
 }
 
 }  // namespace lipofill::plan

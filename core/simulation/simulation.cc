@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "core/base/field_violations.h"
 #include "core/plan/plan_checks.h"
 #include "core/plan/step_rules.h"
 #include "core/simulation/simulation_impl.h"
@@ -41,19 +40,11 @@ absl::StatusOr<std::unique_ptr<Simulation>> Simulation::create(std::shared_ptr<c
 }
 
 absl::Status Simulation::Impl::set_up() {
-  if (const absl::Status status = plan::check_plan(spec); !status.ok()) return status;
-  FieldViolations violations;
-  for (size_t f = 0; f < spec.films.size(); ++f) {
-    auto film = plan::place_film(*model, spec.films[f]);
-    violations.absorb(absl::StrCat("films[", f, "]"), film.status());
-    if (film.ok()) films.push_back(*std::move(film));
-  }
-  if (!violations.empty()) return violations.to_status();
-  for (size_t k = 0; k < spec.injections.size(); ++k) {
-    violations.absorb(absl::StrCat("injections[", k, "]"), schedule.add(*model, films, spec.injections[k], 0.0));
-  }
-  violations.absorb("", place_probes());
-  if (!violations.empty()) return violations.to_status();
+  plan::PlacedPlan placed;
+  if (const absl::Status status = plan::place_plan(*model, spec, nullptr, placed); !status.ok()) return status;
+  films = std::move(placed.films);
+  schedule = std::move(placed.schedule);
+  probes = std::move(placed.probes);
 
   auto created = step::CoupledStep::create(*model, films, spec);
   if (!created.ok()) return created.status();
@@ -69,30 +60,6 @@ absl::Status Simulation::Impl::set_up() {
 
   fill_report(stepper->describe(state), 0.0);
   return absl::OkStatus();
-}
-
-absl::Status Simulation::Impl::place_probes() {
-  FieldViolations violations;
-  for (size_t k = 0; k < spec.probes.size(); ++k) {
-    const plan::ProbeSpec& probe = spec.probes[k];
-    const std::string field = absl::StrCat("probes[", k, "]");
-    const auto film =
-        std::find_if(films.begin(), films.end(), [&](const plan::FilmLayout& f) { return f.name == probe.film; });
-    const int index = probe.film.empty() ? 0 : static_cast<int>(film - films.begin());
-    if (index == static_cast<int>(films.size())) {
-      violations.add(field + ".film", absl::StrCat("is '", probe.film, "', which is no film of the plan"));
-      continue;
-    }
-    const auto place = geometry::locate_in_chart(model->geometry, probe.place);
-    violations.absorb(field + ".place", place.status());
-    if (!place.ok()) continue;
-    const int cell = films[index].cell_at(*place);
-    if (cell < 0)
-      violations.add(field + ".place", absl::StrCat("lies at (", place->xi, ", ", place->eta,
-                                                    ") of the chart, where the film has no cell"));
-    probes.push_back({index, cell});
-  }
-  return violations.to_status();
 }
 
 void Simulation::advance_step() {
@@ -211,10 +178,12 @@ void Simulation::Impl::decide_phase() {
   const bool slow =
       spec.settle_skin_speed > 0.0 && report.skin_speed < spec.settle_skin_speed && state.time >= schedule.end();
   state.slow_steps = slow ? state.slow_steps + 1 : 0;
-  const bool falls = std::isfinite(report.settling_error);
-  if (state.slow_steps >= plan::rules_of(falls ? spec.goal : plan::TimeGoal::kTransient).settled_steps) {
+  const plan::StepRules rules = plan::rules_of(spec.goal);
+  const double allowed = std::max(rules.settled_share * report.skin_max_displacement, rules.settled_distance);
+  if (state.slow_steps >= rules.settled_steps && report.settling_error <= allowed) {
     phase = Phase::kSettled;
-    reason = absl::StrCat("the skin moves slower than ", spec.settle_skin_speed * 1e3, " mm/s");
+    reason = absl::StrCat("the skin moves slower than ", spec.settle_skin_speed * 1e3, " mm/s and has some ",
+                          report.settling_error * 1e3, " mm still to go");
   } else if (state.time >= spec.end * (1.0 - 1e-12)) {
     phase = Phase::kFinished;
     reason = absl::StrCat("the end time of ", spec.end, " s came before the skin was at rest");

@@ -115,6 +115,10 @@ class Simulation {
   const StepReport& report() const;
   std::vector<ZoneReport> zone_reports() const;
   std::vector<LigamentReport> ligament_reports() const;
+  /// What to know before relying on the figures, a sentence each: the remarks on the model and on
+  /// its zones, and once it has ended a scaled Jacobian below 0.2, a pressure above 10 kPa, and
+  /// tissue whose volume is off by more than 2 %.
+  std::vector<std::string> remarks() const;
 
   /// Adds an injection to the plan; without a start it begins now, or after the last one still due.
   /// Field violations named as in lipofill.v1.Injection. A settled or finished simulation does not

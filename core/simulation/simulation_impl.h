@@ -7,27 +7,22 @@
 #include "core/mechanics/simulation_state.h"
 #include "core/plan/film_layout.h"
 #include "core/plan/injection_schedule.h"
+#include "core/plan/plan_placement.h"
 #include "core/simulation/frame_layout.h"
 #include "core/simulation/simulation.h"
 #include "core/step/coupled_step.h"
 
 namespace lipofill::simulation {
 
-/// A probe's cell.
-struct ProbePlace {
-  int film = 0;
-  int cell = 0;
-};
-
 /// The members of Simulation; its functions are spread over simulation.cc (steps), step_report.cc,
-/// frames.cc and snapshot.cc.
+/// frames.cc, result_remarks.cc and snapshot.cc.
 struct Simulation::Impl {
   std::shared_ptr<const model::FaceModel> model;
   plan::SimulationSpec spec;
   std::vector<plan::FilmLayout> films;
   FrameLayout frame_layout;
-  std::vector<Eigen::Matrix3Xd> rest_film_vertices;  ///< span each film's mid-surface [m] (3, n_vertices)
-  std::vector<ProbePlace> probes;
+  std::vector<Eigen::Matrix3Xd> rest_film_vertices;  ///< of each film's mid-surface [m] (3, n_vertices)
+  std::vector<plan::ProbePlace> probes;
   plan::InjectionSchedule schedule;
   std::unique_ptr<step::CoupledStep> stepper;
   mechanics::SimulationState state;
@@ -43,8 +38,6 @@ struct Simulation::Impl {
   Eigen::Matrix3Xd moved_skin;            ///< [m] (3, nodes_per_level)
 
   absl::Status set_up();
-  absl::Status place_probes();
-  absl::Status add_injection(const plan::InjectionSpec& injection, double now);
   void advance();
   void try_with_smaller_steps();
   double first_step_to_try(double smallest) const;
@@ -59,6 +52,7 @@ struct Simulation::Impl {
 
   void fill_report(const step::StepOutcome& outcome, double dt);
   void report_ligaments(const step::StepOutcome& outcome);
+  void remark_on_result(std::vector<std::string>& remarks) const;
   Eigen::Matrix3Xd skin_positions() const;
   Eigen::Matrix3Xd skin_displacement() const;
 

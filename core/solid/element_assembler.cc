@@ -16,9 +16,15 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-HexStiffness compute_stiffness(const HexMesh& mesh, int hexahedron, const std::vector<ElasticMaterial>& materials) {
+ElasticMaterial at_unit_modulus(ElasticMaterial material) {
+  material.youngs_modulus = 1.0;
+  return material;
+}
+
+HexStiffness compute_unit_stiffness(const HexMesh& mesh, int hexahedron,
+                                    const std::vector<ElasticMaterial>& materials) {
   const HexNodes nodes = mesh.gather(hexahedron, mesh.rest_positions);
-  const auto D = compute_elasticity_matrix(materials[mesh.material[hexahedron]]);
+  const auto D = compute_elasticity_matrix(at_unit_modulus(materials[mesh.material[hexahedron]]));
   return mesh.stacked[hexahedron] ? compute_incompatible_modes_stiffness(nodes, D)
                                   : compute_solid_shell_stiffness(nodes, D);
 }
@@ -45,8 +51,8 @@ void set_tension(const HexMesh& mesh, int e, const ElasticMaterial& material, in
   const HexNodes rest = mesh.gather(e, mesh.rest_positions);
   const double volume = 8.0 * compute_jacobian(rest, LocalPoint::Zero()).determinant();
   const double nu = material.poisson_ratio;
-  batch.lambda[lane] = volume * material.youngs_modulus * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
-  batch.mu[lane] = volume * material.youngs_modulus / (2.0 * (1.0 + nu));
+  batch.lambda[lane] = volume * nu / ((1.0 + nu) * (1.0 - 2.0 * nu));
+  batch.mu[lane] = volume / (2.0 * (1.0 + nu));
   batch.squeezed_corner[lane] = InversionBarrier::kThreshold * InversionBarrier::find_largest_corner(rest);
 }
 
@@ -79,7 +85,8 @@ void ElementAssembler::add_batch(const HexMesh& mesh, const std::vector<ElasticM
   for (int lane = 0; lane < kLanes; ++lane) {
     const bool is_left_over = hexahedra[lane] < 0;
     const int e = is_left_over ? hexahedra[0] : hexahedra[lane];
-    const HexStiffness K = is_left_over ? HexStiffness(HexStiffness::Zero()) : compute_stiffness(mesh, e, materials);
+    const HexStiffness K =
+        is_left_over ? HexStiffness(HexStiffness::Zero()) : compute_unit_stiffness(mesh, e, materials);
     force.set_lane(lane, mesh.hexahedra[e], mesh.gather(e, mesh.rest_positions), K);
     set_tension(mesh, e, materials[mesh.material[e]], lane, force);
     stiffness.set_lane(lane, K);
@@ -94,15 +101,26 @@ void ElementAssembler::add_batch(const HexMesh& mesh, const std::vector<ElasticM
   }
 }
 
+/// Lanes that are left over take the modulus of the first.
+std::vector<double> ElementAssembler::spread_moduli(const HexMesh& mesh, const std::vector<double>& of_material) const {
+  std::vector<double> moduli;
+  moduli.reserve(kLanes * hexahedra_.size());
+  for (const Lane& lanes : hexahedra_) {
+    for (const int e : lanes) moduli.push_back(of_material[mesh.material[e < 0 ? lanes[0] : e]]);
+  }
+  return moduli;
+}
+
 template <bool kWithStiffness>
-ElementTotals ElementAssembler::add_batches(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force,
-                                            std::vector<int>& squeezed, double* blocks) const {
+ElementTotals ElementAssembler::add_batches(const std::vector<double>& moduli, const Eigen::Matrix4Xd& x,
+                                            Eigen::Matrix4Xd& force, std::vector<int>& squeezed, double* blocks) const {
   Lanes energy{};
   Lanes least_ratio = fill_lanes(kInfinity);
   LaneMask is_folded{};
   for (size_t k = 0; k < forces_.size(); ++k) {
     ElementPose pose;
-    add_element_forces(forces_[k], x.data(), pose, force.data());
+    const Lanes modulus = load(moduli.data() + kLanes * k);
+    add_element_forces(forces_[k], modulus, x.data(), pose, force.data());
     energy += pose.energy;
     const Lanes ratio = pose.volume_ratio - pose.volume_ratio == 0.0 ? pose.volume_ratio : fill_lanes(-kInfinity);
     least_ratio = ratio < least_ratio ? ratio : least_ratio;
@@ -113,9 +131,9 @@ ElementTotals ElementAssembler::add_batches(const Eigen::Matrix4Xd& x, Eigen::Ma
     }
     if (!kWithStiffness) continue;
     Lanes geometric[kNodePairs];
-    compute_geometric_stiffness(forces_[k], pose.gradient, geometric);
+    compute_geometric_stiffness(forces_[k], modulus, pose.gradient, geometric);
     const StiffnessBatch& next = stiffness_[std::min(k + 1, stiffness_.size() - 1)];
-    add_element_stiffness(stiffness_[k], next, pose.rotation, geometric, blocks);
+    add_element_stiffness(stiffness_[k], next, pose, geometric, blocks);
   }
   ElementTotals totals{0.0, kInfinity, any(is_folded)};
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -125,14 +143,14 @@ ElementTotals ElementAssembler::add_batches(const Eigen::Matrix4Xd& x, Eigen::Ma
   return totals;
 }
 
-ElementTotals ElementAssembler::add_forces(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force,
-                                           std::vector<int>& squeezed) const {
-  return add_batches<false>(x, force, squeezed, nullptr);
+ElementTotals ElementAssembler::add_forces(const std::vector<double>& moduli, const Eigen::Matrix4Xd& x,
+                                           Eigen::Matrix4Xd& force, std::vector<int>& squeezed) const {
+  return add_batches<false>(moduli, x, force, squeezed, nullptr);
 }
 
-ElementTotals ElementAssembler::add(const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force, std::vector<int>& squeezed,
-                                    NodeBlocks& blocks) const {
-  return add_batches<true>(x, force, squeezed, blocks.data());
+ElementTotals ElementAssembler::add(const std::vector<double>& moduli, const Eigen::Matrix4Xd& x,
+                                    Eigen::Matrix4Xd& force, std::vector<int>& squeezed, NodeBlocks& blocks) const {
+  return add_batches<true>(moduli, x, force, squeezed, blocks.data());
 }
 
 }  // namespace lipofill::solid

@@ -190,7 +190,7 @@ LIPOFILL_INLINE Lanes multiply(const Lanes* K, const Lanes (&q)[18], Lanes (&p)[
   return product;
 }
 
-/// A^T p, mode by mode and turned by R: with M the symmetric matrix of p's first six and p_k those of the hourglasses,
+/// A^T p, mode by mode and turned by R (E R where p is of 1 Pa): with M the symmetric matrix of p's first six and p_k those of the hourglasses,
 /// f_j = (M - skew(sum_k p_k S_k^T)) J_0^-T e_j/8 of the linear modes and f_k = p_k of the others.
 LIPOFILL_INLINE void compute_modal_forces(const ElementBatch& batch, const LaneMatrix3& R, const Lanes (&p)[18],
                                           Point (&f)[8]) {
@@ -229,12 +229,13 @@ LIPOFILL_INLINE void scatter(const ElementBatch& batch, const Point (&f)[8], dou
   }
 }
 
-/// R K R^T.
-LIPOFILL_INLINE void rotate_block(const LaneMatrix3& R, const Lanes (&K)[9], Lanes (&rotated)[3][3]) {
+/// (E R) K R^T.
+LIPOFILL_INLINE void rotate_block(const LaneMatrix3& ER, const Lanes (&K)[9], const LaneMatrix3& R,
+                                  Lanes (&rotated)[3][3]) {
   Lanes RK[3][3];
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      RK[i][j] = multiply_add(R.m[i][2], K[6 + j], multiply_add(R.m[i][1], K[3 + j], R.m[i][0] * K[j]));
+      RK[i][j] = multiply_add(ER.m[i][2], K[6 + j], multiply_add(ER.m[i][1], K[3 + j], ER.m[i][0] * K[j]));
     }
   }
   for (int i = 0; i < 3; ++i) {
@@ -266,7 +267,8 @@ LIPOFILL_INLINE void scatter_block(const Lanes (&K)[3][3], bool is_transposed, c
 
 }  // namespace
 
-void add_element_forces(const ElementBatch& batch, const double* x, ElementPose& pose, double* force) {
+void add_element_forces(const ElementBatch& batch, const Lanes& modulus, const double* x, ElementPose& pose,
+                        double* force) {
   Point points[8];
   gather(batch, x, points);
   pose.least_corner = find_least_corner(points);
@@ -277,17 +279,21 @@ void add_element_forces(const ElementBatch& batch, const double* x, ElementPose&
   cofactors(F, C);
   pose.volume_ratio = determinant(F, C);
   find_rotation(F, pose.volume_ratio, pose.rotation);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) pose.stiff_rotation.m[i][j] = modulus * pose.rotation.m[i][j];
+  }
   Lanes q[18], p[18];
   compute_modal_coordinates(batch, points, F, pose.rotation, q);
-  pose.energy = 0.5 * multiply(batch.modal_stiffness, q, p);
-  compute_modal_forces(batch, pose.rotation, p, points);
+  pose.energy = 0.5 * modulus * multiply(batch.modal_stiffness, q, p);
+  compute_modal_forces(batch, pose.stiff_rotation, p, points);
   transform_to_nodes(points);
   scatter(batch, points, force);
 }
 
-void add_element_stiffness(const StiffnessBatch& batch, const StiffnessBatch& next, const LaneMatrix3& rotation,
+void add_element_stiffness(const StiffnessBatch& batch, const StiffnessBatch& next, const ElementPose& pose,
                            const Lanes (&geometric)[kNodePairs], double* blocks) {
-  const LaneMatrix3 R = rotation;
+  const LaneMatrix3 R = pose.rotation;
+  const LaneMatrix3 ER = pose.stiff_rotation;
   const Lanes* K = batch.numbers;
   for (int a = 0; a < 8; ++a) {
     Lanes rotated[3][3];
@@ -295,11 +301,11 @@ void add_element_stiffness(const StiffnessBatch& batch, const StiffnessBatch& ne
       const int pair = node_pair(a, b);
       prefetch(next.numbers + (K - batch.numbers));
       const Lanes whole[9] = {K[0], K[1], K[2], K[3], K[4], K[5], K[6], K[7], K[8]};
-      rotate_block(R, whole, rotated);
+      rotate_block(ER, whole, R, rotated);
       scatter_block(rotated, batch.is_transposed[pair], geometric[pair], batch.block[pair], blocks);
     }
     const Lanes full[9] = {K[0], K[1], K[3], K[1], K[2], K[4], K[3], K[4], K[5]};
-    rotate_block(R, full, rotated);
+    rotate_block(ER, full, R, rotated);
     scatter_block(rotated, false, geometric[node_pair(a, a)], batch.block[node_pair(a, a)], blocks);
     K += 6;
   }

@@ -37,16 +37,18 @@ LIPOFILL_INLINE void turn_plane(int p, int q, int r, Lanes (&A)[6], Lanes (&V)[3
 }
 
 /// Voigt entries of Vol S.
-LIPOFILL_INLINE void compute_stress(const ElementBatch& batch, const LaneMatrix3& F, Lanes (&S)[6]) {
+LIPOFILL_INLINE void compute_stress(const ElementBatch& batch, const Lanes& modulus, const LaneMatrix3& F,
+                                    Lanes (&S)[6]) {
   for (int k = 0; k < 6; ++k) {
     const int i = k % 3;
     const int j = k < 3 ? i : (i + 1) % 3;
     const Lanes product = multiply_add(F.m[2][i], F.m[2][j], multiply_add(F.m[1][i], F.m[1][j], F.m[0][i] * F.m[0][j]));
     S[k] = k < 3 ? 0.5 * (product - 1.0) : 0.5 * product;
   }
-  const Lanes pressure = batch.lambda * (S[0] + S[1] + S[2]);
+  const Lanes pressure = modulus * batch.lambda * (S[0] + S[1] + S[2]);
+  const Lanes twice_mu = 2.0 * modulus * batch.mu;
   for (int k = 0; k < 6; ++k) {
-    S[k] = 2.0 * batch.mu * S[k];
+    S[k] = twice_mu * S[k];
     if (k < 3) S[k] += pressure;
   }
 }
@@ -100,9 +102,10 @@ void take_positive_part(Lanes (&symmetric)[6]) {
   }
 }
 
-void compute_geometric_stiffness(const ElementBatch& batch, const LaneMatrix3& gradient, Lanes (&numbers)[kNodePairs]) {
+void compute_geometric_stiffness(const ElementBatch& batch, const Lanes& modulus, const LaneMatrix3& gradient,
+                                 Lanes (&numbers)[kNodePairs]) {
   Lanes S[6];
-  compute_stress(batch, gradient, S);
+  compute_stress(batch, modulus, gradient, S);
   take_positive_part(S);
   Lanes M[3][3];
   pull_back(batch, S, M);

@@ -12,11 +12,13 @@ namespace lipofill::solid {
 /// at element centres, with S+ the positive part of S: compression is left out, so that the system matrix stays
 /// positive definite. It enters the matrix only, never the forces: converged states do not depend on it.
 ///
+/// @param modulus   Young's modulus, lambda and mu are proportional to it [Pa]
 /// @param gradient  F at the centres
 /// @param numbers   out: the factors of I [N/m], by node_pair
 /// Decision record: core/doc/decisions/003-stiffness-of-tension.md. Checked by
 /// tests/unit/solid/geometric_stiffness_test.cc.
-void compute_geometric_stiffness(const ElementBatch& batch, const LaneMatrix3& gradient, Lanes (&numbers)[kNodePairs]);
+void compute_geometric_stiffness(const ElementBatch& batch, const Lanes& modulus, const LaneMatrix3& gradient,
+                                 Lanes (&numbers)[kNodePairs]);
 
 /// The symmetric matrix of entries (00, 11, 22, 01, 12, 20) with its negative eigenvalues set to zero, by Jacobi's
 /// rotations.

@@ -71,10 +71,6 @@ Hessian positive_part(const Hessian& h) {
 
 }  // namespace
 
-InversionBarrier::InversionBarrier(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials) : mesh_(&mesh) {
-  for (const ElasticMaterial& material : materials) youngs_modulus_.push_back(material.youngs_modulus);
-}
-
 double InversionBarrier::find_largest_corner(const HexNodes& nodes) {
   double largest = 0.0;
   for (int corner = 0; corner < 8; ++corner) largest = std::max(largest, gather_edges(nodes, corner).determinant());
@@ -82,7 +78,8 @@ double InversionBarrier::find_largest_corner(const HexNodes& nodes) {
 }
 
 template <typename Visit>
-void InversionBarrier::for_each_squeezed_corner(int hexahedron, const Eigen::Matrix4Xd& x, Visit visit) const {
+void InversionBarrier::for_each_squeezed_corner(int hexahedron, double youngs_modulus, const Eigen::Matrix4Xd& x,
+                                                Visit visit) const {
   const HexNodes rest = mesh_->gather(hexahedron, mesh_->rest_positions);
   HexNodes now;
   for (int a = 0; a < 8; ++a) now.col(a) = x.col(mesh_->hexahedra[hexahedron][a]).head<3>();
@@ -90,15 +87,15 @@ void InversionBarrier::for_each_squeezed_corner(int hexahedron, const Eigen::Mat
     const Eigen::Matrix3d edges = gather_edges(now, index);
     const double inverse_rest = 1.0 / (kThreshold * gather_edges(rest, index).determinant());
     if (!(edges.determinant() * inverse_rest < 1.0)) continue;
-    const double modulus =
-        youngs_modulus_[mesh_->material[hexahedron]] * compute_jacobian(rest, LocalPoint::Zero()).determinant();
+    const double modulus = youngs_modulus * compute_jacobian(rest, LocalPoint::Zero()).determinant();
     visit(Corner{index, edges, inverse_rest, modulus});
   }
 }
 
-double InversionBarrier::add_force(int hexahedron, const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force) const {
+double InversionBarrier::add_force(int hexahedron, double youngs_modulus, const Eigen::Matrix4Xd& x,
+                                   Eigen::Matrix4Xd& force) const {
   double energy = 0.0;
-  for_each_squeezed_corner(hexahedron, x, [&](const Corner& corner) {
+  for_each_squeezed_corner(hexahedron, youngs_modulus, x, [&](const Corner& corner) {
     const double scale = corner.inverse_rest;
     const BarrierValue barrier = evaluate(scale * corner.edges.determinant());
     const Gradient f = corner.modulus * barrier.slope * scale * determinant_gradient(corner.edges);
@@ -114,12 +111,12 @@ double InversionBarrier::add_force(int hexahedron, const Eigen::Matrix4Xd& x, Ei
   return energy;
 }
 
-void InversionBarrier::add_tangent(int hexahedron, const Eigen::Matrix4Xd& x, const SystemPattern& pattern,
-                                   TangentValues& values) const {
+void InversionBarrier::add_tangent(int hexahedron, double youngs_modulus, const Eigen::Matrix4Xd& x,
+                                   const SystemPattern& pattern, TangentValues& values) const {
   // The map from edges to nodes: e_k = x_k - x_0.
   Eigen::Matrix<double, 9, 12> to_edges;
   to_edges << -Eigen::Matrix3d::Identity().replicate<3, 1>(), Hessian::Identity();
-  for_each_squeezed_corner(hexahedron, x, [&](const Corner& corner) {
+  for_each_squeezed_corner(hexahedron, youngs_modulus, x, [&](const Corner& corner) {
     const double scale = corner.inverse_rest;
     const BarrierValue barrier = evaluate(scale * corner.edges.determinant());
     const Gradient g = scale * determinant_gradient(corner.edges);

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "core/solid/hex_mesh.h"
 #include "core/solid/hex_shape.h"
-#include "core/solid/material.h"
 #include "core/solid/node_blocks.h"
 #include "core/solid/system_pattern.h"
 
@@ -31,7 +29,7 @@ class InversionBarrier {
   static constexpr double kLeastShare = 0.05;  ///< of j
 
   /// The mesh must outlive the barrier.
-  InversionBarrier(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials);
+  explicit InversionBarrier(const HexMesh& mesh) : mesh_(&mesh) {}
 
   /// Largest det[e_1 e_2 e_3] of a hexahedron's corners [m3]: where no corner has less than kThreshold times that of
   /// the rest shape, there is no barrier.
@@ -39,8 +37,9 @@ class InversionBarrier {
 
   /// Adds the force of a hexahedron at the positions `x` (4, n_nodes; the last row has no meaning) to `force` (4,
   /// n_nodes); returns the energy [J]. Allocates nothing, as does add_tangent.
-  double add_force(int hexahedron, const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force) const;
-  void add_tangent(int hexahedron, const Eigen::Matrix4Xd& x, const SystemPattern& pattern,
+  /// @param youngs_modulus  E of the hexahedron [Pa]
+  double add_force(int hexahedron, double youngs_modulus, const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force) const;
+  void add_tangent(int hexahedron, double youngs_modulus, const Eigen::Matrix4Xd& x, const SystemPattern& pattern,
                    TangentValues& values) const;
 
  private:
@@ -51,10 +50,9 @@ class InversionBarrier {
     double modulus;       ///< E V_e/8 [J]
   };
   template <typename Visit>
-  void for_each_squeezed_corner(int hexahedron, const Eigen::Matrix4Xd& x, Visit visit) const;
+  void for_each_squeezed_corner(int hexahedron, double youngs_modulus, const Eigen::Matrix4Xd& x, Visit visit) const;
 
   const HexMesh* mesh_;
-  std::vector<double> youngs_modulus_;  ///< of each material [Pa]
 };
 
 }  // namespace lipofill::solid

@@ -7,17 +7,25 @@
 
 namespace lipofill::solid {
 
+std::vector<double> youngs_moduli_of(const std::vector<ElasticMaterial>& materials) {
+  std::vector<double> moduli;
+  for (const ElasticMaterial& material : materials) moduli.push_back(material.youngs_modulus);
+  return moduli;
+}
+
 absl::StatusOr<Tissue> Tissue::create(HexMesh mesh, const std::vector<ElasticMaterial>& materials,
                                       NodeSupports supports, RayleighDamping damping,
                                       const std::vector<WallSpring>& springs) {
   auto structure = TissueStructure::create(std::move(mesh), materials, std::move(supports), springs);
   if (!structure.ok()) return structure.status();
-  return create(*std::move(structure), damping);
+  return create(*std::move(structure), youngs_moduli_of(materials), damping);
 }
 
-absl::StatusOr<Tissue> Tissue::create(std::shared_ptr<const TissueStructure> structure, RayleighDamping damping) {
+absl::StatusOr<Tissue> Tissue::create(std::shared_ptr<const TissueStructure> structure,
+                                      const std::vector<double>& youngs_moduli, RayleighDamping damping) {
   if (absl::Status status = check_damping(damping); !status.ok()) return status;
   Tissue tissue(std::move(structure), damping);
+  if (absl::Status status = tissue.set_youngs_moduli(youngs_moduli); !status.ok()) return status;
   tissue.assemble(tissue.mesh().rest_positions, std::numeric_limits<double>::infinity());
   return tissue;
 }
@@ -35,17 +43,25 @@ Tissue::Tissue(std::shared_ptr<const TissueStructure> structure, RayleighDamping
   squeezed_.reserve(mesh().n_hexahedra());
 }
 
+absl::Status Tissue::set_youngs_moduli(const std::vector<double>& youngs_moduli) {
+  const absl::Status status = check_youngs_moduli(youngs_moduli, structure_->n_materials());
+  if (!status.ok()) return status;
+  youngs_moduli_ = youngs_moduli;
+  batch_moduli_ = structure_->elements().spread_moduli(mesh(), youngs_moduli);
+  return absl::OkStatus();
+}
+
 void Tissue::assemble(const Eigen::Matrix3Xd& x, double dt) {
   begin(x);
   blocks_.set_zero();
-  totals_ = structure_->elements().add(positions_, force_, squeezed_, blocks_);
+  totals_ = structure_->elements().add(batch_moduli_, positions_, force_, squeezed_, blocks_);
   finish_force();
   compose_system_matrix(dt);
 }
 
 void Tissue::compute_force(const Eigen::Matrix3Xd& x) {
   begin(x);
-  totals_ = structure_->elements().add_forces(positions_, force_, squeezed_);
+  totals_ = structure_->elements().add_forces(batch_moduli_, positions_, force_, squeezed_);
   finish_force();
 }
 
@@ -61,7 +77,7 @@ void Tissue::finish_force() {
   elastic_energy_ = totals_.elastic_energy;
   elastic_energy_ += structure_->prestress().add_force(positions_, force_);
   for (const int hexahedron : squeezed_) {
-    elastic_energy_ += structure_->barrier().add_force(hexahedron, positions_, force_);
+    elastic_energy_ += structure_->barrier().add_force(hexahedron, youngs_modulus(hexahedron), positions_, force_);
   }
   elastic_energy_ += structure_->springs().add_force(positions_, springs_, force_);
   add_supports();
@@ -89,7 +105,9 @@ void Tissue::compose_system_matrix(double dt) {
   TangentValues values{stiffness_values_.data(), system_matrix_.valuePtr(), 1.0 + damping_.beta / dt};
   const SystemPattern& pattern = structure_->pattern();
   blocks_.write(pattern, structure_->prestress().stiffness(), values.factor, values.stiffness, values.system);
-  for (const int hexahedron : squeezed_) structure_->barrier().add_tangent(hexahedron, positions_, pattern, values);
+  for (const int hexahedron : squeezed_) {
+    structure_->barrier().add_tangent(hexahedron, youngs_modulus(hexahedron), positions_, pattern, values);
+  }
   structure_->springs().add_tangent(positions_, springs_, values);
   for (const TissueStructure::SprungNode& sprung : structure_->sprung_nodes()) {
     for (const int place : sprung.diagonal) {

@@ -20,10 +20,13 @@ struct RayleighDamping {
   double beta = 0.0;   ///< [s]
 };
 
+/// Young's modulus of each material [Pa].
+std::vector<double> youngs_moduli_of(const std::vector<ElasticMaterial>& materials);
+
 /// Corotational finite-element tissue:
 ///
 ///     f_int(x) = sum_e R_e K_e (R_e^T x_e - X_e) + springs + prestress + barrier
-///                                                       R_e: rotation of the element's centre, K_e constant (24, 24)
+///                        R_e: rotation of the element's centre, K_e = E_e times a constant (24, 24)
 ///     S        = M/dt^2 + D/dt + K + K_G,   K = sum_e R_e K_e R_e^T + springs
 ///
 /// with K_G the stiffness of tension: of what strain brings (geometric_stiffness.h), of what is there at rest
@@ -32,9 +35,9 @@ struct RayleighDamping {
 /// consistent load. K_e is the solid-shell (solid_shell.h), in stacked layers EAS-9 (incompatible_modes.h). Degrees of
 /// freedom are the components of nodes that are not fixed, numbered node by node.
 ///
-/// The parts that never change are in a TissueStructure, which tissues share; a tissue itself holds
-/// values. Deterministic: everything depends on the last assemble alone, summed in an order that
-/// the mesh decides. Checked by tests/unit/solid/ and tests/verification/solid/ (patch test, rigid
+/// The parts that never change are in a TissueStructure, which tissues share; a tissue itself holds values and Young's
+/// moduli. Deterministic: everything depends on the moduli and the last assemble alone, summed in an order that the
+/// mesh decides. Checked by tests/unit/solid/ and tests/verification/solid/ (patch test, rigid
 /// rotation, clamped plate and others).
 class Tissue {
  public:
@@ -42,7 +45,9 @@ class Tissue {
   static absl::StatusOr<Tissue> create(HexMesh mesh, const std::vector<ElasticMaterial>& materials,
                                        NodeSupports supports, RayleighDamping damping,
                                        const std::vector<WallSpring>& springs = {});
-  static absl::StatusOr<Tissue> create(std::shared_ptr<const TissueStructure> structure, RayleighDamping damping);
+  /// @param youngs_moduli  E [Pa], a value a material of the structure
+  static absl::StatusOr<Tissue> create(std::shared_ptr<const TissueStructure> structure,
+                                       const std::vector<double>& youngs_moduli, RayleighDamping damping);
 
   const std::shared_ptr<const TissueStructure>& structure() const { return structure_; }
   const HexMesh& mesh() const { return structure_->mesh(); }
@@ -51,6 +56,11 @@ class Tissue {
   const std::vector<int>& dof_of_component() const { return structure_->pattern().dof_of_component(); }
   /// Lumped mass, a value a node [kg].
   const Eigen::VectorXd& mass() const { return structure_->mass(); }
+
+  /// Sets Young's moduli [Pa], a value a material; forces and stiffness have them from the next assemble or
+  /// compute_force on, and are then the same bits as in a tissue created with them. INVALID_ARGUMENT, and nothing
+  /// changes, where one is out of bounds or their number is wrong.
+  absl::Status set_youngs_moduli(const std::vector<double>& youngs_moduli);
 
   /// Brings rotations, internal force and stiffness to the positions `x` (3, n_nodes) [m]. `dt` > 0 [s]; infinity gives
   /// S = K + K_G. Fixed components of `x` count where they are, so a support may be moved. Allocates nothing.
@@ -63,7 +73,6 @@ class Tissue {
   int n_springs() const { return static_cast<int>(springs_.size()); }
   /// A broken spring carries nothing from the next assemble on. All are intact at first.
   void set_spring_intact(int spring, bool intact) { springs_[spring].intact = intact; }
-  bool spring_intact(int spring) const { return springs_[spring].intact; }
   /// Tension of a spring [N], 0 when slack or broken, and the distance between its ends [m], both
   /// at the last assemble.
   double spring_tension(int spring) const { return springs_[spring].tension; }
@@ -102,9 +111,12 @@ class Tissue {
   void finish_force();
   void add_supports();
   void compose_system_matrix(double dt);
+  double youngs_modulus(int hexahedron) const { return youngs_moduli_[mesh().material[hexahedron]]; }
 
   std::shared_ptr<const TissueStructure> structure_;
   RayleighDamping damping_;
+  std::vector<double> youngs_moduli_;  ///< of each material [Pa]
+  std::vector<double> batch_moduli_;   ///< of each hexahedron, in the order of the batches [Pa]
   std::vector<WallSpringState> springs_;
   Eigen::Matrix4Xd positions_;        ///< of the last assemble or compute_force; the last row is 0
   Eigen::Matrix4Xd force_;            ///< f_int, a column a node; the last row has no meaning [N]

@@ -147,6 +147,17 @@ absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial
   return violations.to_status();
 }
 
+absl::Status check_youngs_moduli(const std::vector<double>& youngs_moduli, int n_materials) {
+  FieldViolations violations;
+  check_size("youngs_moduli", youngs_moduli.size(), n_materials, violations);
+  for (size_t m = 0; m < youngs_moduli.size(); ++m) {
+    if (std::isfinite(youngs_moduli[m]) && youngs_moduli[m] > 0.0) continue;
+    violations.add(absl::StrCat("youngs_moduli[", m, "]"),
+                   absl::StrCat("is ", youngs_moduli[m], " Pa, must be finite and greater than 0"));
+  }
+  return violations.to_status();
+}
+
 absl::Status check_damping(const RayleighDamping& damping) {
   FieldViolations violations;
   check_damping("damping.alpha", damping.alpha, "1/s", violations);

@@ -15,6 +15,9 @@ namespace lipofill::solid {
 absl::Status check_tissue(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials,
                           const NodeSupports& supports, const std::vector<WallSpring>& springs = {});
 
+/// Checks that there is a modulus [Pa] a material, each finite and positive.
+absl::Status check_youngs_moduli(const std::vector<double>& youngs_moduli, int n_materials);
+
 absl::Status check_damping(const RayleighDamping& damping);
 
 }  // namespace lipofill::solid

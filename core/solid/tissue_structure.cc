@@ -20,10 +20,11 @@ absl::StatusOr<std::shared_ptr<const TissueStructure>> TissueStructure::create(
 TissueStructure::TissueStructure(HexMesh mesh, const std::vector<ElasticMaterial>& materials,
                                  const NodeSupports& supports, const std::vector<WallSpring>& springs)
     : mesh_(std::move(mesh)),
+      n_materials_(static_cast<int>(materials.size())),
       pattern_(mesh_.n_nodes(), mesh_.hexahedra, supports.fixed, collect_coupled_nodes(springs)),
       elements_(mesh_, materials, pattern_),
       prestress_(mesh_, materials, pattern_),
-      barrier_(mesh_, materials),
+      barrier_(mesh_),
       springs_(springs, mesh_.rest_positions, pattern_) {
   lump_mass(materials);
   find_diagonal(supports);

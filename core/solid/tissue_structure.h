@@ -22,8 +22,9 @@ struct NodeSupports {
   std::vector<double> spring;              ///< isotropic spring to the rest position, a value a node [N/m]; empty: none
 };
 
-/// The parts of a tissue that never change: its mesh, numbering, element matrices and springs.
-/// Tissues share it (tissue.h); nothing in it is written once it is made, so threads may.
+/// The parts of a tissue that never change: its mesh, numbering, element matrices and springs. Young's moduli do
+/// change: element matrices are of 1 Pa, and each tissue multiplies them by its own. Tissues share a structure
+/// (tissue.h); nothing in it is written once it is made, so threads may.
 class TissueStructure {
  public:
   /// Creates the structure. INVALID_ARGUMENT with a violation each for sizes that disagree, a node
@@ -46,6 +47,7 @@ class TissueStructure {
   };
 
   const HexMesh& mesh() const { return mesh_; }
+  int n_materials() const { return n_materials_; }
   const SystemPattern& pattern() const { return pattern_; }
   const ElementAssembler& elements() const { return elements_; }
   const Prestress& prestress() const { return prestress_; }
@@ -65,6 +67,7 @@ class TissueStructure {
   void find_diagonal(const NodeSupports& supports);
 
   HexMesh mesh_;
+  int n_materials_;
   SystemPattern pattern_;
   ElementAssembler elements_;
   Prestress prestress_;

@@ -28,7 +28,7 @@ void LaggedMobility::renew(const coupling::FilmSolution& at, mechanics::Simulati
 void LaggedMobility::keep(const mechanics::SimulationState& state) {
   kept_.resize(state.films.size());
   for (size_t f = 0; f < state.films.size(); ++f) kept_[f] = state.films[f].factored_mobility;
-  solver_.pressure_solver().keep_mobility(kept_);
+  solver_.pressure_solver().renew_preconditioner(kept_);
 }
 
 }  // namespace lipofill::step

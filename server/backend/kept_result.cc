@@ -43,8 +43,8 @@ absl::StatusOr<std::shared_ptr<const KeptMessages>> encode(const SimulationResul
   }
   const auto selection = choose(meshes, frame, options);
   if (!selection.ok()) return selection.status();
-  keep_meshes(selection->meshes, *meshes.mutable_arrays());
-  keep_selection(*selection, frame);
+  select_meshes(selection->meshes, *meshes.mutable_arrays());
+  select_fields(*selection, frame);
   meshes.set_topology_hash(compute_topology_hash(meshes));
   frame.set_topology_hash(meshes.topology_hash());
   return std::make_shared<const KeptMessages>(KeptMessages{encode_meshes(meshes), encode_frame(frame)});

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/units.h"
 #include "lipofill/v1/simulation_service.pb.h"
 #include "server/sessions/identifiers.h"
 #include "server/store/record_names.h"
@@ -32,8 +33,8 @@ absl::StatusOr<bool> ResultKeeper::keep_command(const CommandRecord& command, co
   return store_.append_command(command, "", request);
 }
 
-// The plan that is kept follows what was injected. The session's lock keeps others from doing the
-// same meanwhile.
+// The plan that is kept follows what was injected. Others cannot do the same meanwhile: the session
+// is locked.
 absl::StatusOr<bool> ResultKeeper::keep_injection(const CommandRecord& command, double start_s,
                                                   const RequestKey& request) {
   v1::Injection injection;
@@ -151,7 +152,7 @@ absl::Status ResultKeeper::append_series(const std::string& id, const std::vecto
 void ResultKeeper::stepped(const SeriesEntry& entry) {
   const mechanics::StepCost& cost = entry.report.cost;
   StepFigures step;
-  step.wall_s = 1e-3 * entry.wall_ms;
+  step.wall_s = kSecondsPerMillisecond * entry.wall_ms;
   step.cpu_s = cost.times.total;
   step.element_cpu_s = cost.times.element;
   step.factor_cpu_s = cost.times.factor;

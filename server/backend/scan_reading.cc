@@ -1,6 +1,7 @@
 #include "server/backend/scan_reading.h"
 
 #include "absl/strings/str_cat.h"
+#include "core/base/units.h"
 #include "lipofill/v1/patient_service.pb.h"
 #include "server/store/record_names.h"
 
@@ -23,9 +24,9 @@ double metres_per_unit(const ScanRecord& scan) {
     case v1::METRE:
       return 1.0;
     case v1::CENTIMETRE:
-      return 1e-2;
+      return kMetresPerCentimetre;
     default:
-      return 1e-3;
+      return kMetresPerMillimetre;
   }
 }
 

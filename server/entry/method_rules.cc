@@ -34,6 +34,7 @@ const std::map<std::string, MethodRule>& rules() {
       {"/lipofill.v1.PatientService/ListScans", {Effect::kNone, Role::kViewer}},
       {"/lipofill.v1.PatientService/UpdatePatient", {Effect::kSteers, Role::kPlanner}},
       {"/lipofill.v1.PatientService/UploadScan", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.SimulationService/CheckPlan", {Effect::kNone, Role::kViewer}},
       {"/lipofill.v1.SimulationService/CreateCheckpoint", {Effect::kBegins, Role::kPlanner}},
       {"/lipofill.v1.SimulationService/CreateSimulation", {Effect::kBegins, Role::kPlanner}},
       {"/lipofill.v1.SimulationService/DeleteCheckpoint", {Effect::kSteers, Role::kPlanner}},

@@ -21,7 +21,7 @@ class MetricsServer {
   int port() const { return port_; }
 
  private:
-  struct Http;  // keeps the library's header out of here
+  struct Http;  // hides the library's header
   MetricsServer();
 
   std::unique_ptr<Http> http_;

@@ -6,7 +6,7 @@
 
 namespace lipofill::server {
 
-/// Keeps SIGTERM and SIGINT, from here on, for wait_for_signal(), whichever thread they reach;
+/// Holds SIGTERM and SIGINT back, from here on, for wait_for_signal(), whichever thread they reach;
 /// threads started later are not interrupted by them. SIGPIPE and SIGXFSZ are ignored. To be called
 /// once, before the first thread is started.
 void take_signals();

@@ -3,6 +3,7 @@
 #include <functional>
 #include <utility>
 
+#include "core/base/units.h"
 #include "server/backend/scan_reading.h"
 #include "server/entry/unary.h"
 #include "server/wire/frame_encoding.h"
@@ -15,7 +16,7 @@ std::vector<float> to_points_mm(const Eigen::Matrix3Xd& points) {
   std::vector<float> values;
   values.reserve(static_cast<size_t>(points.size()));
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(points(c, i) * 1e3));
+    for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(points(c, i) * kMillimetresPerMetre));
   }
   return values;
 }

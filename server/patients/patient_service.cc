@@ -264,7 +264,7 @@ PatientService::Reactor* PatientService::ListModels(Context* context, const v1::
     if (!models.ok()) return models.status();
     response->set_next_page_token(fill_page(collection, *page, *models, [&](const ModelRecord& model) {
       *response->add_models() = to_model(model);
-      keep_masked(mask, *response->mutable_models()->rbegin());
+      apply_field_mask(mask, *response->mutable_models()->rbegin());
     }));
     return absl::OkStatus();
   });

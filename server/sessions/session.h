@@ -245,7 +245,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   std::vector<SeriesEntry> pending_;
 };
 
-/// The session, which is not parked as long as this is kept: for whoever is about to ask something of it. Null for
+/// The session, which is not parked as long as this is there: for whoever is about to ask something of it. Null for
 /// null.
 std::shared_ptr<Session> hold(const std::shared_ptr<Session>& session);
 

@@ -61,12 +61,14 @@ void Session::forget_pending(size_t n_rows) {
 void Session::update_view() {
   std::vector<simulation::ZoneReport> zones = simulation_->zone_reports();
   std::vector<simulation::LigamentReport> ligaments = simulation_->ligament_reports();
+  std::vector<std::string> remarks = simulation_->remarks();
   double wall_s = wall_before_s_;
   if (clock_runs_) wall_s += std::chrono::duration<double>(Clock::now() - running_since_).count();
   const std::lock_guard lock(view_mutex_);
   view_.report = simulation_->report();
   view_.zones = std::move(zones);
   view_.ligaments = std::move(ligaments);
+  view_.remarks = std::move(remarks);
   view_.wall_s = wall_s;
   view_.cost = cost_;
 }

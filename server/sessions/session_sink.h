@@ -44,6 +44,7 @@ struct SessionView {
   simulation::StepReport report;
   std::vector<simulation::ZoneReport> zones;
   std::vector<simulation::LigamentReport> ligaments;
+  std::vector<std::string> remarks;
   int n_hexahedra = 0;
   int n_film_cells = 0;
   int n_dofs = 0;

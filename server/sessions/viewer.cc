@@ -160,7 +160,7 @@ bool Viewer::closed() const {
   return end_.has_value();
 }
 
-/// The last frame says that it is over, which no viewer need be kept from.
+/// The last frame says that it is over, which every viewer may hear.
 bool Viewer::must_wait() const {
   return options_.max_unacknowledged > 0 && unacknowledged_.size() >= options_.max_unacknowledged &&
          !frames_.front()->end;

@@ -47,8 +47,8 @@ using ToSend = std::variant<std::monostate, TopologyToSend, FrameToSend, EndOfSt
 /// Queue of what one watcher has yet to be sent. The session puts frames in and never waits; the
 /// stream takes them out as fast as its client reads.
 ///
-/// kLatest keeps one frame, and the preview beside it: a newer one takes its place and the skipped one is counted.
-/// kEvery keeps all up to a number of bytes; one frame more ends the stream with RESOURCE_EXHAUSTED. Where the client
+/// kLatest holds one frame, and the preview beside it: a newer one takes its place and the skipped one is counted.
+/// kEvery holds all up to a number of bytes; one frame more ends the stream with RESOURCE_EXHAUSTED. Where the client
 /// acknowledges frames, none but the last is taken while `max_unacknowledged` are on their way: what is taken after an
 /// acknowledgement is as new as that. Checked by tests/unit/server/sessions/viewer_test.cc.
 class Viewer {

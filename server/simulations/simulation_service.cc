@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/backend/parking.h"
+#include "server/backend/plan_check.h"
 #include "server/backend/result_reading.h"
 #include "server/backend/simulation_creation.h"
 #include "server/entry/listing.h"
@@ -130,6 +131,15 @@ Reactor* SimulationService::CreateSimulation(Context* context, const v1::CreateS
   });
 }
 
+Reactor* SimulationService::CheckPlan(Context* context, const v1::CheckPlanRequest* request,
+                                      v1::CheckPlanResponse* response) {
+  return answer_later(context, request, backend_, [this, context, request, response] {
+    auto check = check_plan(backend_, *request, caller_has_left(context));
+    if (check.ok()) *response = *std::move(check);
+    return check.status();
+  });
+}
+
 Reactor* SimulationService::GetSimulation(Context* context, const v1::GetSimulationRequest* request,
                                           v1::Simulation* response) {
   const auto id = parse_simulation_name(request->name(), "name");
@@ -138,7 +148,7 @@ Reactor* SimulationService::GetSimulation(Context* context, const v1::GetSimulat
   if (session != nullptr && check_call(context, *request).ok()) {
     Reactor* reactor = context->DefaultReactor();
     session->inspect(reply_to(backend_, *id, reactor, response,
-                              [mask = request->read_mask()](v1::Simulation& shown) { keep_masked(mask, shown); }));
+                              [mask = request->read_mask()](v1::Simulation& shown) { apply_field_mask(mask, shown); }));
     return reactor;
   }
   return answer(context, request, [&]() -> absl::Status {
@@ -146,7 +156,7 @@ Reactor* SimulationService::GetSimulation(Context* context, const v1::GetSimulat
     if (!masked.ok()) return masked;
     const auto record = backend_.store.get_simulation(*id);
     if (record.ok()) *response = to_simulation(*record, nullptr);
-    keep_masked(request->read_mask(), *response);
+    apply_field_mask(request->read_mask(), *response);
     return record.status();
   });
 }
@@ -164,7 +174,7 @@ Reactor* SimulationService::ListSimulations(Context* context, const v1::ListSimu
       const auto session = backend_.sessions.find(record.id);
       const SessionView view = session != nullptr ? session->cached_view() : SessionView{};
       *response->add_simulations() = to_simulation(record, session != nullptr ? &view : nullptr);
-      keep_masked(mask, *response->mutable_simulations()->rbegin());
+      apply_field_mask(mask, *response->mutable_simulations()->rbegin());
     }));
     return absl::OkStatus();
   });

@@ -19,6 +19,7 @@ class SimulationService : public v1::SimulationService::CallbackService {
 
   Reactor* CreateSimulation(Context* context, const v1::CreateSimulationRequest* request,
                             v1::Simulation* response) override;
+  Reactor* CheckPlan(Context* context, const v1::CheckPlanRequest* request, v1::CheckPlanResponse* response) override;
   Reactor* GetSimulation(Context* context, const v1::GetSimulationRequest* request, v1::Simulation* response) override;
   Reactor* ListSimulations(Context* context, const v1::ListSimulationsRequest* request,
                            v1::ListSimulationsResponse* response) override;

@@ -98,13 +98,13 @@ absl::Status SqliteStore::delete_checkpoint(const std::string& simulation, const
   });
 }
 
-absl::Status SqliteStore::prune_checkpoints(const std::string& simulation, int keep) {
+absl::Status SqliteStore::prune_checkpoints(const std::string& simulation, int newest) {
   const std::lock_guard lock(mutex_);
   Query remove(*database_,
                "DELETE FROM checkpoints WHERE simulation = ?1 AND kind = ?2 AND id NOT IN "
                "(SELECT id FROM checkpoints WHERE simulation = ?1 AND kind = ?2 AND on_course "
                "ORDER BY last_command DESC, step DESC, create_time_us DESC LIMIT ?3)");
-  return remove.bind(simulation, static_cast<int>(CheckpointKind::kAutomatic), keep).run();
+  return remove.bind(simulation, static_cast<int>(CheckpointKind::kAutomatic), newest).run();
 }
 
 absl::StatusOr<uint64_t> SqliteStore::count_checkpoint_bytes() {

@@ -64,7 +64,7 @@ class SqliteStore : public Store {
   absl::StatusOr<std::vector<CheckpointRecord>> list_checkpoints(const std::string& simulation,
                                                                  const Page& page) override;
   absl::Status delete_checkpoint(const std::string& simulation, const std::string& id) override;
-  absl::Status prune_checkpoints(const std::string& simulation, int keep) override;
+  absl::Status prune_checkpoints(const std::string& simulation, int newest) override;
   absl::StatusOr<uint64_t> count_checkpoint_bytes() override;
 
   absl::StatusOr<SimulationRecord> create_simulation_from(const SimulationRecord& simulation,

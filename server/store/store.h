@@ -94,8 +94,8 @@ class Store {
   /// Deletes a checkpoint. FAILED_PRECONDITION for the one that a simulation which has not ended
   /// began from.
   virtual absl::Status delete_checkpoint(const std::string& simulation, const std::string& id) = 0;
-  /// Deletes automatic checkpoints except the newest `keep` on course.
-  virtual absl::Status prune_checkpoints(const std::string& simulation, int keep) = 0;
+  /// Deletes automatic checkpoints except the `newest` on course.
+  virtual absl::Status prune_checkpoints(const std::string& simulation, int newest) = 0;
   virtual absl::StatusOr<uint64_t> count_checkpoint_bytes() = 0;
 
   /// A simulation that begins from a checkpoint of its own, whose file is there.

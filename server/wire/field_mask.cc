@@ -45,7 +45,7 @@ absl::Status check_field_mask(const FieldMask& mask, const google::protobuf::Des
   return violations.empty() ? absl::OkStatus() : violations.to_status();
 }
 
-void keep_masked(const FieldMask& mask, google::protobuf::Message& message) {
+void apply_field_mask(const FieldMask& mask, google::protobuf::Message& message) {
   if (!means_everything(mask)) FieldMaskUtil::TrimMessage(mask, &message);
 }
 

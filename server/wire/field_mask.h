@@ -17,7 +17,7 @@ absl::Status check_field_mask(const google::protobuf::FieldMask& mask, const goo
                               const std::string& field);
 
 /// Leaves of a message only what a mask that was checked names.
-void keep_masked(const google::protobuf::FieldMask& mask, google::protobuf::Message& message);
+void apply_field_mask(const google::protobuf::FieldMask& mask, google::protobuf::Message& message);
 
 /// True when a mask that was checked names a field of the message itself.
 bool is_masked(const google::protobuf::FieldMask& mask, const std::string& path);
@@ -28,7 +28,7 @@ template <typename Request, typename Response, typename Read>
 absl::Status read_masked(const Request& request, Response& response, Read&& read) {
   const absl::Status good = check_field_mask(request.read_mask(), *Response::descriptor(), "read_mask");
   const absl::Status done = good.ok() ? read() : good;
-  if (done.ok()) keep_masked(request.read_mask(), response);
+  if (done.ok()) apply_field_mask(request.read_mask(), response);
   return done;
 }
 

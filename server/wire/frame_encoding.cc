@@ -93,14 +93,14 @@ v1::FrameSlice to_whole_frame(const Frame& frame, const Selection& selection) {
   return whole;
 }
 
-void keep_meshes(const std::vector<std::string>& meshes, RepeatedPtrField<v1::ArraySlice>& arrays) {
+void select_meshes(const std::vector<std::string>& meshes, RepeatedPtrField<v1::ArraySlice>& arrays) {
   const auto gone = std::remove_if(arrays.begin(), arrays.end(), [&meshes](const v1::ArraySlice& array) {
     return !contains(meshes, mesh_of(array.name()));
   });
   arrays.erase(gone, arrays.end());
 }
 
-void keep_selection(const Selection& selection, v1::FrameSlice& frame) {
+void select_fields(const Selection& selection, v1::FrameSlice& frame) {
   RepeatedPtrField<v1::ArraySlice>& fields = *frame.mutable_fields();
   const auto gone = std::remove_if(fields.begin(), fields.end(), [&selection](const v1::ArraySlice& field) {
     return !selection.has_mesh(mesh_of(field.name())) || !selection.has_field(field.name());

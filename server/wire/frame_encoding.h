@@ -16,9 +16,9 @@ constexpr size_t kMaxSliceBytes = size_t{1} << 20;
 /// Whole arrays, as they are kept for simulations that have ended.
 v1::MeshSlice to_whole_meshes(const Topology& topology, const std::vector<std::string>& meshes);
 v1::FrameSlice to_whole_frame(const Frame& frame, const Selection& selection);
-/// The same for meshes and frames that were kept: what is not selected is left out.
-void keep_meshes(const std::vector<std::string>& meshes, google::protobuf::RepeatedPtrField<v1::ArraySlice>& arrays);
-void keep_selection(const Selection& selection, v1::FrameSlice& frame);
+/// Leaves of meshes and frames that were kept only what is selected.
+void select_meshes(const std::vector<std::string>& meshes, google::protobuf::RepeatedPtrField<v1::ArraySlice>& arrays);
+void select_fields(const Selection& selection, v1::FrameSlice& frame);
 
 /// Names of the meshes whose points are there.
 std::vector<std::string> mesh_names(const v1::MeshSlice& meshes);

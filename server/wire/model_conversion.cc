@@ -21,12 +21,30 @@ geometry::ScanRegionSpec read_scan_region(const v1::ScanRegion& message, const F
     region.landmarks[name] = read_vector(position, kMetresPerMillimetre, landmark);
   }
   if (message.has_axes()) region.axes = read_axes(message.axes(), reader.below("axes"));
+  if (message.has_around()) {
+    if (message.corners_size() > 0) reader.wrong("corners", "are given, and so is around: one of them at most");
+    return region;
+  }
   if (message.corners_size() != 4) {
-    reader.wrong("corners", absl::StrCat("are ", message.corners_size(), ", must be 4"));
+    reader.wrong("corners", absl::StrCat("are ", message.corners_size(),
+                                         ", must be 4, or none with around, from which the region follows"));
     return region;
   }
   for (int i = 0; i < 4; ++i) region.corners[i] = read_skin_point(message.corners(i), reader.below("corners", i));
   return region;
+}
+
+model::AroundSpec read_around(const v1::Around& message, const FieldReader& reader) {
+  model::AroundSpec around;
+  around.regions = {message.regions().begin(), message.regions().end()};
+  for (int i = 0; i < message.discs_size(); ++i) {
+    const v1::SkinDisc& disc = message.discs(i);
+    const FieldReader below = reader.below("discs", i);
+    around.discs.push_back({read_skin_point(disc.centre(), below.below("centre")),
+                            below.required(disc.has_radius_mm(), disc.radius_mm(), kMetresPerMillimetre, "radius_mm")});
+  }
+  if (message.has_margin_mm()) around.margin = message.margin_mm() * kMetresPerMillimetre;
+  return around;
 }
 
 model::Support read_support(const v1::Support& message, const FieldReader& reader) {
@@ -109,7 +127,11 @@ absl::StatusOr<model::FaceModelSpec> to_face_model_spec(const v1::ModelSpec& giv
         below.required(square.has_length_xi_mm(), square.length_xi_mm(), kMetresPerMillimetre, "length_xi_mm"),
         below.required(square.has_length_eta_mm(), square.length_eta_mm(), kMetresPerMillimetre, "length_eta_mm")};
   } else if (message.has_scan_region()) {
-    spec.region = read_scan_region(message.scan_region(), reader.below("scan_region"));
+    const FieldReader below = reader.below("scan_region");
+    spec.region = read_scan_region(message.scan_region(), below);
+    if (message.scan_region().has_around()) {
+      spec.around = read_around(message.scan_region().around(), below.below("around"));
+    }
   } else {
     reader.wrong("square", "is missing, and so is scan_region: one of them says where the model is");
   }

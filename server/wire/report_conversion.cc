@@ -103,6 +103,7 @@ v1::ModelReport to_model_report(const model::FaceModel& model) {
   report.set_scan_vertices_in_patch(static_cast<uint32_t>(face.riders.size()));
   report.set_max_chart_deviation_mm(face.max_rider_distance * kMillimetresPerMetre);
   for (const std::string& remark : face.scan_remarks) report.add_scan_remarks(remark);
+  for (const std::string& caution : face.cautions) report.add_scan_remarks(caution);
   add_layers(model, report);
   if (model.bone) *report.mutable_bone() = to_bone_report(*model.bone);
   return report;
@@ -189,6 +190,7 @@ v1::Summary to_summary(const SessionView& view) {
     zone->set_mean_pressure_pa(report.mean_pressure);
     zone->set_max_thickness_mm(report.max_thickness * kMillimetresPerMetre);
   }
+  for (const std::string& remark : view.remarks) summary.add_remarks(remark);
   return summary;
 }
 

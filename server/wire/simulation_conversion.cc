@@ -86,6 +86,23 @@ plan::WallSpec read_wall_in_film(const v1::Wall& message, const FieldReader& rea
   return wall;
 }
 
+plan::ZoneEdgeSpec read_edge(const v1::ZoneEdge& message, const FieldReader& reader) {
+  plan::ZoneEdgeSpec edge;
+  if (message.outline() == v1::ZoneEdge::CELLS) edge.outline = plan::ZoneOutline::kCells;
+  if (message.has_rigid()) {
+    if (!message.rigid()) reader.wrong("rigid", "is false: leave it out, or give an attachment");
+    edge.is_rigid = true;
+  }
+  if (message.has_attachment()) {
+    const v1::Attachment& given = message.attachment();
+    const FieldReader attachment = reader.below("attachment");
+    edge.attachment = {attachment.required(given.has_stiffness_kpa_per_mm(), given.stiffness_kpa_per_mm(),
+                                           kPascalsPerMetrePerKilopascalPerMillimetre, "stiffness_kpa_per_mm"),
+                       attachment.required(given.has_width_mm(), given.width_mm(), kMetresPerMillimetre, "width_mm")};
+  }
+  return edge;
+}
+
 plan::FilmSpec read_film(const v1::Film& message, const FieldReader& reader) {
   plan::FilmSpec film;
   film.name = message.name();
@@ -114,6 +131,7 @@ plan::FilmSpec read_film(const v1::Film& message, const FieldReader& reader) {
   film.connective_tissue = {
       message.connective_tissue().stiffness_kpa_per_mm() * kPascalsPerMetrePerKilopascalPerMillimetre,
       message.connective_tissue().entry_pressure_pa()};
+  film.edge = read_edge(message.edge(), reader.below("edge"));
   return film;
 }
 

@@ -133,6 +133,13 @@ def test_what_is_only_checked_is_not_kept(connection, plate):
     with connection.run(make_plate()) as run:
         before = [each.name for each in connection.simulations.list()]
         assert connection.simulations.check(run.get().spec).summary.film_cells > 0
+        found = connection.simulations.check_plan(run.get().spec)
+        assert not found.violations and found.zones[0].area_cm2 > 0 and found.zones[0].outline
+        spoilt = run.get().spec
+        spoilt.fat.density_kg_m3 = -1
+        assert [each.field for each in connection.simulations.check_plan(spoilt).violations] == [
+            "spec.fat.density_kg_m3"
+        ]
         assert [each.name for each in connection.simulations.list()] == before
 
 

@@ -45,7 +45,7 @@ ALLOWED = {
     "server/ops": {"core/base", "server/security", "server/ops"},
     "server/sessions": {"core", "server/store", "server/sessions"},
     "server/wire": RECORDS
-    | {"core/base", "core/geometry", "core/anatomy", "core/model", "core/plan"}
+    | {"core/base", "core/geometry", "core/anatomy", "core/model", "core/plan", "core/simulation"}
     | {"proto", "grpc", "server/wire"},
     "server/backend": BELOW_BACKEND
     | {"core/base", "core/geometry", "core/model", "core/simulation"}

@@ -1,6 +1,7 @@
 #include "client/cpp/picture/result_picture.h"
 
 #include "absl/status/statusor.h"
+#include "absl/strings/str_cat.h"
 #include "client/cpp/picture/colours.h"
 #include "client/cpp/picture/panels.h"
 #include "client/cpp/picture/pressure_bands.h"
@@ -22,15 +23,42 @@ constexpr int kTextSize = 22;
 constexpr double kColumn = 0.385;
 constexpr double kSide = 0.785;       // where the third column begins
 constexpr double kSideRight = 0.985;  // and where its figures end
-constexpr double kRow = 0.45;
+constexpr double kRowsTop = 0.945;
 constexpr double kRowsBottom = 0.045;
-constexpr double kHeading = 0.032;  // a row has this share above its panels
-constexpr double kLine = 0.027;     // a line of text is this far from the next
+constexpr double kRemarkLine = 0.019;
+constexpr size_t kMostRemarks = 6;
+constexpr size_t kRemarkLength = 175;  // letters that the sheet is wide enough for
+constexpr double kHeading = 0.032;     // of a row, above its panels
+constexpr double kLine = 0.027;        // from a line of text to the next
 
-/// The panel in a column and a row, both from the upper left.
-Area area_of(int column, int row) {
-  const double bottom = kRowsBottom + (1 - row) * kRow;
-  return {column * kColumn, bottom, (column + 1) * kColumn, bottom + kRow - kHeading};
+/// The two rows of panels: they leave room for remarks below them.
+struct Rows {
+  double bottom = kRowsBottom;
+
+  /// The panel in a column and a row, both from the upper left.
+  Area area_of(int column, int row) const {
+    const double height = 0.5 * (kRowsTop - bottom);
+    const double low = bottom + (1 - row) * height;
+    return {column * kColumn, low, (column + 1) * kColumn, low + height - kHeading};
+  }
+};
+
+/// The remarks as lines that fit the sheet.
+std::vector<std::string> lines_of(const std::vector<std::string>& remarks) {
+  std::vector<std::string> lines;
+  for (size_t k = 0; k < remarks.size() && k < kMostRemarks; ++k) {
+    lines.push_back(remarks[k].size() <= kRemarkLength ? remarks[k] : remarks[k].substr(0, kRemarkLength) + " ...");
+  }
+  if (remarks.size() > kMostRemarks) lines.push_back(absl::StrCat("and ", remarks.size() - kMostRemarks, " more"));
+  return lines;
+}
+
+void add_remarks(const std::vector<std::string>& lines, Overlay& overlay) {
+  double y = kRowsBottom + kRemarkLine * (static_cast<double>(lines.size()) - 0.5);
+  for (const std::string& line : lines) {
+    overlay.add_text(line, kTextSize, 0.012, y);
+    y -= kRemarkLine;
+  }
 }
 
 void add_heading(const std::string& text, const Area& area, Overlay& overlay) {
@@ -64,6 +92,9 @@ Sheet result_sheet(const PictureRequest& request, vtkPolyData* after) {
   const Surface before = with_normals(at_rest(after));
   const View view = view_of(before, kDisplacement, request.up);
   const auto colours = displacement_colours(largest_size(after, kDisplacementLength));
+  const std::vector<std::string> remarks = lines_of(request.remarks);
+  const Rows rows{kRowsBottom + kRemarkLine * static_cast<double>(remarks.size())};
+  const auto area_of = [&rows](int column, int row) { return rows.area_of(column, row); };
   Sheet sheet{2000, 1480, {}, {}};
   sheet.panels = {panel(area_of(0, 0), before, view, {}), panel(area_of(1, 0), shaded, view, {}),
                   panel(area_of(0, 1), shaded, view, {Kind::kPointField, kDisplacementLength, colours}),
@@ -74,6 +105,7 @@ Sheet result_sheet(const PictureRequest& request, vtkPolyData* after) {
   add_heading("Pressure of the fat", area_of(1, 1), sheet.overlay);
   sheet.overlay.add_text(request.title, kTitleSize, 0.012, 0.972);
   sheet.overlay.add_text(request.caption, kTextSize, 0.012, 0.018);
+  add_remarks(remarks, sheet.overlay);
   add_figures(request, area_of(0, 0).top, sheet.overlay);
   const double legends = area_of(0, 1).top;
   sheet.overlay.add_text("Displacement [mm]", kHeadingSize, kSide, legends);

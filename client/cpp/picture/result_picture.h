@@ -24,6 +24,9 @@ struct PictureRequest {
   std::string caption;
   /// Figures beside the panels: what, and how much; a heading where there is no second.
   std::vector<std::pair<std::string, std::string>> figures;
+  /// Sentences under the panels: what to know before relying on the figures. The first six are
+  /// shown, the others counted.
+  std::vector<std::string> remarks;
 };
 
 /// Draws before, after, displacement and pressure on one sheet: four panels of one camera that

@@ -15,7 +15,7 @@
 #include "absl/strings/str_format.h"
 #include "client/cpp/io/vtk_messages.h"
 #include "client/cpp/volume/header_text.h"
-#include "client/cpp/volume/tar_reader.h"
+#include "client/cpp/volume/tar_archive.h"
 #include "client/cpp/volume/volume_header.h"
 
 namespace lipofill::client {
@@ -48,14 +48,16 @@ std::vector<double> numbers_of(vtkXMLDataElement* array) {
 }
 
 absl::StatusOr<std::string> read_plist(const std::filesystem::path& project) {
-  auto tar = TarReader::open(project);
+  auto tar = TarArchive::open(project);
   if (!tar.ok()) return tar.status();
-  const auto entry = tar->find("main.plist");
-  if (!entry.ok())
-    return absl::InvalidArgumentError(absl::StrCat("not an InVesalius project: ", entry.status().message()));
-  if (entry->size > kMaxPlistBytes)
-    return absl::InvalidArgumentError(absl::StrCat(project.string(), ": main.plist is too large"));
-  std::string text(entry->size, '\0');
+  const auto size = tar->find("main.plist");
+  if (!size.ok())
+    return absl::InvalidArgumentError(absl::StrCat("not an InVesalius project: ", size.status().message()));
+  if (*size > kMaxPlistBytes) {
+    return bad_volume(project,
+                      absl::StrCat("has a main.plist of ", *size, " bytes, must have at most ", kMaxPlistBytes));
+  }
+  std::string text(*size, '\0');
   if (auto status = tar->read(text.data(), text.size()); !status.ok()) return status;
   return text;
 }
@@ -102,7 +104,7 @@ std::string metaimage_header(const InvesaliusVolume& volume) {
       -dy * static_cast<double>(rows - 1), dx, dy, dz, columns, rows, slices);
 }
 
-absl::Status write_metaimage(TarReader* matrix, const InvesaliusVolume& volume, const std::filesystem::path& out) {
+absl::Status write_metaimage(TarArchive* matrix, const InvesaliusVolume& volume, const std::filesystem::path& out) {
   const auto& [columns, rows, slices] = volume.size;
   const size_t row_bytes = columns * sizeof(int16_t);
   std::vector<char> slice(row_bytes * rows);
@@ -129,15 +131,15 @@ absl::StatusOr<InvesaliusVolume> convert_invesalius(const std::filesystem::path&
   if (!plist.ok()) return plist.status();
   const auto project = parse_project(file, *plist);
   if (!project.ok()) return project.status();
-  auto tar = TarReader::open(file);
+  auto tar = TarArchive::open(file);
   if (!tar.ok()) return tar.status();
-  const auto entry = tar->find(project->matrix_file);
-  if (!entry.ok()) return absl::InvalidArgumentError(entry.status().message());
+  const auto found = tar->find(project->matrix_file);
+  if (!found.ok()) return absl::InvalidArgumentError(found.status().message());
   const auto& size = project->volume.size;
   const uint64_t expected = size[0] * size[1] * size[2] * sizeof(int16_t);
-  if (entry->size != expected || expected > kMaxVolumeBytes) {
+  if (*found != expected || expected > kMaxVolumeBytes) {
     return bad_volume(file,
-                      absl::StrCat("has a matrix of ", entry->size, " bytes where its main.plist asks for ", expected));
+                      absl::StrCat("has a matrix of ", *found, " bytes where its main.plist asks for ", expected));
   }
   if (auto status = write_metaimage(&*tar, project->volume, out); !status.ok()) {
     std::error_code error;

@@ -72,7 +72,7 @@ absl::Status set_voxels(const std::filesystem::path& file, const HeaderText& tex
   const std::string channels = text.value("elementnumberofchannels");
   if (!channels.empty() && channels != "1") return bad_volume(file, absl::StrCat("has ", channels, " channels, not 1"));
   if (text.has("binarydata") && !is_true(text.value("binarydata")))
-    return bad_volume(file, "keeps its voxels as text, which is not supported");
+    return bad_volume(file, "has its voxels as text, which is not supported");
   header->big_endian = is_true(value_of(text, {"binarydatabyteordermsb", "elementbyteordermsb"}));
   header->compressed = is_true(text.value("compresseddata"));
   return absl::OkStatus();
@@ -93,7 +93,7 @@ absl::StatusOr<VolumeHeader> parse_metaimage_header(const std::filesystem::path&
   if (auto status = set_voxels(file, *text, &header); !status.ok()) return status;
   const std::string data = text->value("elementdatafile");
   if (data.starts_with("LIST") || data.find('%') != std::string::npos)
-    return bad_volume(file, "keeps its slices in files of their own; join them first");
+    return bad_volume(file, "has its slices in files of their own; join them first");
   const bool local = absl::AsciiStrToLower(data) == "local";
   header.data_file = local ? file : file.parent_path() / data;
   header.data_offset = local ? text->end : 0;

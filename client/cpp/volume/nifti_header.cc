@@ -63,7 +63,7 @@ absl::StatusOr<VolumeHeader> interpret(const std::filesystem::path& file, const 
   if (bytes.is_nifti2()) return bad_volume(file, "is NIfTI-2; only NIfTI-1 is read");
   if (!bytes.is_nifti1()) return bad_volume(file, "is not NIfTI-1: its header has another length or magic");
   if (bytes.text(344, 3) == "ni1")
-    return bad_volume(file, "keeps its voxels in a file of their own (.hdr, .img); only .nii and .nii.gz are read");
+    return bad_volume(file, "has its voxels in a file of their own (.hdr, .img); only .nii and .nii.gz are read");
   const int16_t dimensions = bytes.read<int16_t>(40);
   for (int i = 4; i <= std::min<int>(dimensions, 7); ++i) {
     if (bytes.read<int16_t>(static_cast<size_t>(40 + 2 * i)) > 1)

@@ -120,7 +120,7 @@ absl::StatusOr<VolumeHeader> parse_nrrd_header(const std::filesystem::path& file
   }
   const std::string data = text->has("data file") ? text->value("data file") : text->value("datafile");
   if (data.starts_with("LIST") || data.find('%') != std::string::npos)
-    return bad_volume(file, "keeps its slices in files of their own; join them first");
+    return bad_volume(file, "has its slices in files of their own; join them first");
   header.data_file = data.empty() ? file : file.parent_path() / data;
   header.data_offset = data.empty() ? text->end : 0;
   if (auto status = set_geometry(file, *text, &header); !status.ok()) return status;

@@ -55,7 +55,7 @@ Surface contour(const Volume& volume, double isovalue) {
   return contour->GetOutput();
 }
 
-/// Converts voxel indices to millimetres; triangles keep facing the lower values also when the axes
+/// Converts voxel indices to millimetres; triangles face the lower values also when the axes
 /// are left-handed or the slope is negative.
 Surface to_millimetres(const Volume& volume, vtkPolyData* surface) {
   vtkNew<vtkMatrix4x4> matrix;
@@ -72,19 +72,19 @@ Surface to_millimetres(const Volume& volume, vtkPolyData* surface) {
   return output_of(reversed.Get(), result);
 }
 
-Surface keep_largest(vtkPolyData* surface, bool keep_all, int* components) {
+Surface extract_largest(vtkPolyData* surface, bool take_all, int* components) {
   vtkNew<vtkPolyDataConnectivityFilter> connectivity;
-  if (keep_all) {
+  if (take_all) {
     connectivity->SetExtractionModeToAllRegions();
   } else {
     connectivity->SetExtractionModeToLargestRegion();
   }
-  Surface kept = output_of(connectivity.Get(), surface);
+  Surface extracted = output_of(connectivity.Get(), surface);
   *components = connectivity->GetNumberOfExtractedRegions();
   // The filter leaves the points of the other pieces behind.
   vtkNew<vtkCleanPolyData> clean;
   clean->PointMergingOff();
-  Surface result = output_of(clean.Get(), kept);
+  Surface result = output_of(clean.Get(), extracted);
   result->GetPointData()->Initialize();
   return result;
 }
@@ -147,7 +147,7 @@ absl::StatusOr<ExtractedSkin> extract_skin(const std::filesystem::path& file, co
   volume->voxels = nullptr;
   if (surface->GetNumberOfCells() == 0)
     return bad_volume(file, absl::StrCat("has no surface at the value ", options.isovalue));
-  surface = keep_largest(to_millimetres(*volume, surface), options.all_components, &skin.components);
+  surface = extract_largest(to_millimetres(*volume, surface), options.all_components, &skin.components);
   if (options.smoothing_iterations > 0) surface = smooth(surface, options.smoothing_iterations);
   if (options.target_triangles > 0) surface = decimate(surface, options.target_triangles);
   if (auto status = write_surface(out, surface); !status.ok()) return status;

@@ -10,10 +10,10 @@
 namespace lipofill::client {
 
 struct SkinExtraction {
-  double isovalue = -300.0;       ///< has the volume's own unit; -300 HU is the skin in a CT
-  bool all_components = false;    ///< keep everything, not only the largest connected piece
+  double isovalue = -300.0;       ///< in the volume's own values; -300 HU is the skin in a CT
+  bool all_components = false;    ///< take everything, not only the largest connected piece
   int smoothing_iterations = 0;   ///< windowed sinc; 0: none
-  uint64_t target_triangles = 0;  ///< decimate down to about as many; 0: keep all
+  uint64_t target_triangles = 0;  ///< decimate down to about as many; 0: not at all
 };
 
 /// Result of the extraction.

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes half_face.obj and half_face.landmarks.json: the left half of a face that nobody has.
+"""Makes half_face.obj and half_face.landmarks.json: the left half of a face that nobody has; or,
+for tests, a whole one of other shape.
 
 The head is sculpted from ellipsoids and tapered rods, given as signed distances [mm] and blended
 with smooth minima; a grid of rays from a point inside the head samples its outermost surface. Sizes
@@ -7,6 +8,7 @@ are those of an average adult. Axes: +x the subject's left, +y up, +z forward; t
 Standard library only; the same files come out byte for byte on every run.
 
     make_half_face.py [--out FOLDER]
+    make_half_face.py --whole --name long_face --stretch 0.95 1.12 1.0 --step 2 --out FOLDER
 """
 
 import argparse
@@ -199,6 +201,28 @@ def sample_head():
     return [[find_skin(direction(a, e)) for a in AZIMUTHS] for e in ELEVATIONS]
 
 
+def sample_whole_head(step):
+    """The same rows of a head with both sides, `step` times as coarse: the left one, and its mirror
+    image.
+    """
+    azimuths = [math.radians(1.5 * step * i) for i in range(int(123.0 / (1.5 * step)) + 1)]
+    rows = []
+    for elevation in ELEVATIONS[::step]:
+        left = [find_skin(direction(azimuth, elevation)) for azimuth in azimuths]
+        rows.append([(-x, y, z) for x, y, z in reversed(left[1:])] + [(0.0, *left[0][1:])] + left[1:])
+    return rows
+
+
+def reshape(rows, stretch, taper):
+    """The head stretched along its axes, and wider above than below by `taper` over 100 mm."""
+
+    def moved(p):
+        x, y, z = p
+        return (x * stretch[0] * (1.0 + taper * (y - CENTRE[1]) / 100.0), y * stretch[1], z * stretch[2])
+
+    return [[moved(p) for p in row] for row in rows]
+
+
 def nearest(points, target):
     return min(points, key=lambda p: sum((a - b) ** 2 for a, b in zip(p, target)))
 
@@ -212,9 +236,10 @@ def behind_chord(profile, top, bottom):
     return max(between, key=lambda p: (z0 + (z1 - z0) * (p[1] - y0) / (y1 - y0)) - p[2])
 
 
-def find_landmarks(rows):
-    points = [p for row in rows for p in row]
-    middle = min(range(len(AZIMUTHS)), key=lambda i: abs(AZIMUTHS[i]))
+def find_landmarks(rows, middle, both_sides=False):
+    """Indices (row, place in the row) of the landmarks."""
+    places = {p: (j, i) for j, row in enumerate(rows) for i, p in enumerate(row)}
+    points = list(places)
     profile = [row[middle] for row in rows]
 
     def most_forward(low, high):
@@ -238,14 +263,18 @@ def find_landmarks(rows):
     }
     for name, (x, y, z) in lateral.items():
         found[name + "_left"] = nearest(points, (x, y, z))
-    found["cheilion_right"] = nearest(points, (-23, 20.2, 103))
-    return found
+        if both_sides:
+            found[name + "_right"] = nearest(points, (-x, y, z))
+    if not both_sides:
+        found["cheilion_right"] = nearest(points, (-23, 20.2, 103))
+    return {name: places[p] for name, p in found.items()}
 
 
 def write_surface(path, rows):
-    width = len(AZIMUTHS)
+    width = len(rows[0])
+    name = os.path.splitext(os.path.basename(path))[0]
     with open(path, "w", newline="\n") as out:
-        out.write("# half_face: SYNTHETIC, sculpted by make_half_face.py; nobody has this face. Millimetres.\n")
+        out.write(f"# {name}: SYNTHETIC, sculpted by make_half_face.py; nobody has this face. Millimetres.\n")
         out.write("# axes: +x subject left, +y up, +z forward; midline x = 0\n")
         for row in rows:
             for p in row:
@@ -258,7 +287,7 @@ def write_surface(path, rows):
 
 def write_landmarks(path, landmarks):
     description = {
-        "surface": "half_face.obj",
+        "surface": os.path.basename(path).replace(".landmarks.json", ".obj"),
         "units": "mm",
         "note": "SYNTHETIC: a face sculpted by make_half_face.py, of no person, for trying the software out",
         "axes": {
@@ -284,10 +313,21 @@ def write_landmarks(path, landmarks):
 def main():
     parser = argparse.ArgumentParser(description="Makes half_face.obj and half_face.landmarks.json, a synthetic face.")
     parser.add_argument("--out", default=os.path.dirname(os.path.abspath(__file__)), help="folder to write to")
-    folder = parser.parse_args().out
-    rows = sample_head()
-    write_surface(os.path.join(folder, "half_face.obj"), rows)
-    write_landmarks(os.path.join(folder, "half_face.landmarks.json"), find_landmarks(rows))
+    parser.add_argument("--name", default="half_face", help="of the files")
+    parser.add_argument("--whole", action="store_true", help="both sides")
+    parser.add_argument("--step", type=int, default=1, help="of a whole head: so many times as coarse")
+    parser.add_argument("--stretch", type=float, nargs=3, default=(1.0, 1.0, 1.0), metavar=("X", "Y", "Z"))
+    parser.add_argument("--taper", type=float, default=0.0, help="wider above than below, over 100 mm")
+    options = parser.parse_args()
+    rows = sample_whole_head(options.step) if options.whole else sample_head()
+    middle = min(range(len(AZIMUTHS)), key=lambda i: abs(AZIMUTHS[i])) if not options.whole else len(rows[0]) // 2
+    places = find_landmarks(rows, middle, options.whole)
+    shaped = rows
+    if tuple(options.stretch) != (1.0, 1.0, 1.0) or options.taper != 0.0:
+        shaped = reshape(rows, options.stretch, options.taper)
+    write_surface(os.path.join(options.out, options.name + ".obj"), shaped)
+    landmarks = {name: tuple(round(c, 3) for c in shaped[j][i]) for name, (j, i) in places.items()}
+    write_landmarks(os.path.join(options.out, options.name + ".landmarks.json"), landmarks)
 
 
 if __name__ == "__main__":

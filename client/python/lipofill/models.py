@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Iterator, Optional
+from typing import Iterator, Optional
 
+from lipofill.channel import Channel
 from lipofill.errors import LipofillError, NotFoundError, UnavailableError
 from lipofill.frames import Meshes, meshes_from_slices
+from lipofill.operations import Operations
 from lipofill.progress import ProgressCallback
 from lipofill.retries import with_request_id
 from lipofill.v1 import model_pb2
 from lipofill.v1 import operation_service_pb2 as pb_operation
 from lipofill.v1 import patient_service_pb2 as pb
-
-if TYPE_CHECKING:
-    from lipofill.connection import Connection
 
 _MOST_RESTARTS = 10
 
@@ -21,9 +20,10 @@ _MOST_RESTARTS = 10
 class Models:
     """The models of patients."""
 
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-        self._stub = connection.patient_stub
+    def __init__(self, channel: Channel, operations: Operations) -> None:
+        self._channel = channel
+        self._operations = operations
+        self._stub = channel.patient_stub
 
     def build(
         self, patient: str, spec: model_pb2.ModelSpec, *, progress: Optional[ProgressCallback] = None
@@ -49,12 +49,8 @@ class Models:
         return model
 
     def check(self, patient: str, spec: model_pb2.ModelSpec) -> None:
-        """Raises what `build` would raise for the spec, as far as that is known without
-        building.
-        """
-        self._connection.call(
-            self._stub.BuildModel, pb.BuildModelRequest(parent=patient, spec=spec, validate_only=True)
-        )
+        """Raises what `build` would raise for the spec, as far as it is known without one."""
+        self._channel.call(self._stub.BuildModel, pb.BuildModelRequest(parent=patient, spec=spec, validate_only=True))
 
     def _build(
         self, request: pb.BuildModelRequest, progress: Optional[ProgressCallback]
@@ -62,9 +58,9 @@ class Models:
         """None where the operation went with a daemon that ended: the same request then begins it
         anew, or finds what it made.
         """
-        operation = self._connection.call(self._stub.BuildModel, request)
+        operation = self._channel.call(self._stub.BuildModel, request)
         try:
-            return self._connection.operations.wait(operation, progress=progress)
+            return self._operations.wait(operation, progress=progress)
         except NotFoundError as error:
             if error.from_daemon and operation.name in error.message:
                 return None
@@ -72,21 +68,19 @@ class Models:
         except LipofillError:
             raise
         except BaseException:
-            self._connection.operations.cancel(operation.name)
+            self._operations.cancel(operation.name)
             raise
 
     def get(self, name: str) -> model_pb2.Model:
-        return self._connection.call(self._stub.GetModel, pb.GetModelRequest(name=name))
+        return self._channel.call(self._stub.GetModel, pb.GetModelRequest(name=name))
 
     def list(self, patient: str) -> Iterator[model_pb2.Model]:
         """Of one patient, by name."""
-        return self._connection.paged(self._stub.ListModels, pb.ListModelsRequest(parent=patient), "models")
+        return self._channel.paged(self._stub.ListModels, pb.ListModelsRequest(parent=patient), "models")
 
     def delete(self, name: str) -> None:
-        """Results of its simulations stay. FailedPreconditionError while a simulation runs on
-        it.
-        """
-        self._connection.delete(self._stub.DeleteModel, pb.DeleteModelRequest(name=name))
+        """Keeps the results of its simulations. FailedPreconditionError while one runs on it."""
+        self._channel.delete(self._stub.DeleteModel, pb.DeleteModelRequest(name=name))
 
     def download_meshes(self, name: str) -> Meshes:
         """The model's meshes at rest: ``skin``, ``tissue`` and, where it has one, ``scan``; points
@@ -94,6 +88,6 @@ class Models:
         """
         request = pb.DownloadModelMeshRequest(name=name)
         stream = self._stub.DownloadModelMesh(
-            request, timeout=self._connection.timeout_s, metadata=self._connection.metadata()
+            request, timeout=self._channel.timeout_s, metadata=self._channel.metadata()
         )
-        return meshes_from_slices(self._connection.stream_items(stream))
+        return meshes_from_slices(self._channel.stream_items(stream))

@@ -102,7 +102,7 @@ class Plan:
         return plan
 
     def to_json(self) -> str:
-        """The plan file; numbers keep every digit."""
+        """The plan file; numbers have every digit."""
         content = json_format.MessageToDict(self.message, preserving_proto_field_name=True)
         return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
@@ -145,20 +145,26 @@ class Plan:
         self,
         scan: PathLike,
         *,
-        corners: Sequence[geometry_pb2.SkinPoint],
+        corners: Sequence[geometry_pb2.SkinPoint] = (),
+        around: Sequence[str] = (),
         n_xi: int,
         n_eta: int,
         landmarks: Optional[PathLike] = None,
         unit: str = "mm",
     ) -> Plan:
-        """A region of a scan between four corners, anticlockwise seen from outside, in n_xi x n_eta
-        hexahedra.
+        """A region of a scan, in n_xi x n_eta hexahedra: around named regions of the face, or
+        between four corners, anticlockwise seen from outside. With neither it follows from the
+        zones of the films.
         """
         self.message.scan.file, self.message.scan.unit = os.fspath(scan), unit_of(unit)
         if landmarks is not None:
             self.message.scan.landmarks_file = os.fspath(landmarks)
         del self.model.scan_region.corners[:]
         self.model.scan_region.corners.extend(corners)
+        self.model.scan_region.ClearField("around")
+        if around:
+            self.model.scan_region.around.regions.extend(around)
+        self.model.scan_region.SetInParent()
         self.model.n_xi, self.model.n_eta = n_xi, n_eta
         return self
 
@@ -243,9 +249,12 @@ class Plan:
         return self.folder / self.message.bone.file if self.message.bone.file else None
 
     def model_with_landmarks(self) -> model_pb2.ModelSpec:
-        """The model, the landmarks of the plan's landmarks file in its scan region."""
+        """The model, the landmarks of the plan's landmarks file in its scan region, which follows
+        from the zones where the plan does not give it.
+        """
         spec = model_pb2.ModelSpec()
         spec.CopyFrom(self.model)
+        _take_region_from_zones(spec, self.simulation)
         if not self.message.scan.landmarks_file:
             return spec
         if not spec.HasField("scan_region"):
@@ -256,6 +265,20 @@ class Plan:
         path = os.fspath(self.folder / self.message.scan.landmarks_file)
         load_landmarks(path, spec.scan_region, scan_unit=unit_name(self.message.scan.unit))
         return spec
+
+
+def _take_region_from_zones(spec: model_pb2.ModelSpec, simulation: simulation_pb2.SimulationSpec) -> None:
+    """Named regions and discs of all films, each once; boxes and painted zones lie on a chart that
+    is not there yet.
+    """
+    region = spec.scan_region
+    if not spec.HasField("scan_region") or region.corners or region.around.regions or region.around.discs:
+        return
+    for zone in (zone for film in simulation.films for zone in film.zones):
+        if zone.HasField("region") and zone.region not in region.around.regions:
+            region.around.regions.append(zone.region)
+        elif zone.HasField("disc") and not zone.disc.centre.HasField("chart"):
+            region.around.discs.add(centre=zone.disc.centre, radius_mm=zone.disc.radius_mm)
 
 
 def unit_name(unit: plan_pb2.ScanUnit) -> str:

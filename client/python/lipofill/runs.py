@@ -4,17 +4,29 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
+from dataclasses import dataclass
 from types import TracebackType
-from typing import TYPE_CHECKING, Optional, Type
+from typing import Optional, Type
 
+from lipofill.channel import Channel
 from lipofill.errors import NotFoundError, PermissionDeniedError
+from lipofill.models import Models
+from lipofill.patients import Patients
 from lipofill.plans import Plan, unit_name
 from lipofill.progress import ProgressCallback
-from lipofill.simulations import Simulation
+from lipofill.scans import Scans
+from lipofill.simulations import Simulation, Simulations
 from lipofill.v1 import model_pb2, simulation_pb2
 
-if TYPE_CHECKING:
-    from lipofill.connection import Connection
+
+@dataclass(frozen=True)
+class Collections:
+    """Where a run makes what it needs, and takes it away again."""
+
+    patients: Patients
+    scans: Scans
+    models: Models
+    simulations: Simulations
 
 
 def display_name_of(plan_name: str) -> str:
@@ -40,7 +52,8 @@ class Run(Simulation):
 
     def __init__(
         self,
-        connection: Connection,
+        channel: Channel,
+        collections: Collections,
         name: str,
         plan: Plan,
         patient: str,
@@ -48,7 +61,8 @@ class Run(Simulation):
         keep: bool,
         made_patient: bool,
     ) -> None:
-        super().__init__(connection, name)
+        super().__init__(channel, name)
+        self._collections = collections
         self.plan = plan
         self.patient = patient
         self.model = model
@@ -57,25 +71,31 @@ class Run(Simulation):
 
     @classmethod
     def prepare(
-        cls, connection: Connection, plan: Plan, patient: str, keep: bool, progress: Optional[ProgressCallback]
+        cls,
+        channel: Channel,
+        collections: Collections,
+        plan: Plan,
+        patient: str,
+        keep: bool,
+        progress: Optional[ProgressCallback],
     ) -> Run:
         """See Connection.run. What was made is taken away again where a step fails."""
         spec = plan.model_with_landmarks()
         made_patient = not patient
         if made_patient:
-            patient = connection.patients.create().name
+            patient = collections.patients.create().name
         try:
-            _upload(connection, plan, patient, spec, progress)
-            model = connection.models.build(patient, spec, progress=progress)
+            _upload(collections.scans, plan, patient, spec, progress)
+            model = collections.models.build(patient, spec, progress=progress)
             simulation = simulation_pb2.SimulationSpec()
             simulation.CopyFrom(plan.simulation)
             simulation.model = model.name
-            made = connection.simulations.create(simulation, display_name=display_name_of(plan.message.name))
+            made = collections.simulations.create(simulation, display_name=display_name_of(plan.message.name))
         except BaseException:
             if made_patient:
-                _delete_patient(connection, patient)
+                _delete_patient(collections.patients, patient)
             raise
-        return cls(connection, made.name, plan, patient, model, keep, made_patient)
+        return cls(channel, collections, made.name, plan, patient, model, keep, made_patient)
 
     def __exit__(
         self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
@@ -91,25 +111,25 @@ class Run(Simulation):
         with suppress(NotFoundError):
             self.delete()
         with suppress(NotFoundError):
-            self._connection.models.delete(self.model.name)
+            self._collections.models.delete(self.model.name)
         if self._made_patient:
-            _delete_patient(self._connection, self.patient)
+            _delete_patient(self._collections.patients, self.patient)
 
 
-def _delete_patient(connection: Connection, patient: str) -> None:
+def _delete_patient(patients: Patients, patient: str) -> None:
     """A planner may make patients, but needs an admin to delete them: then it stays."""
     with suppress(PermissionDeniedError):
-        connection.patients.delete(patient, force=True)
+        patients.delete(patient, force=True)
 
 
 def _upload(
-    connection: Connection, plan: Plan, patient: str, spec: model_pb2.ModelSpec, progress: Optional[ProgressCallback]
+    scans: Scans, plan: Plan, patient: str, spec: model_pb2.ModelSpec, progress: Optional[ProgressCallback]
 ) -> None:
     """Sends the files that the plan names and puts their names into the model."""
     scan, bone = plan.scan_path(), plan.bone_path()
     if scan is not None:
         unit = unit_name(plan.message.scan.unit)
-        spec.scan_region.scan = connection.scans.upload(patient, scan, unit=unit, progress=progress).name
+        spec.scan_region.scan = scans.upload(patient, scan, unit=unit, progress=progress).name
     if bone is not None:
         unit = unit_name(plan.message.bone.unit)
-        spec.scan_region.bone_scan = connection.scans.upload(patient, bone, unit=unit, progress=progress).name
+        spec.scan_region.bone_scan = scans.upload(patient, bone, unit=unit, progress=progress).name

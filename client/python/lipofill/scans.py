@@ -5,19 +5,17 @@ from __future__ import annotations
 import hashlib
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Iterator, Optional, Union
+from typing import Iterator, Optional, Union
 
 import grpc
 
+from lipofill.channel import Channel
 from lipofill.errors import InvalidArgumentError, LipofillError, error_from_call
 from lipofill.frames import Meshes, meshes_from_slices
 from lipofill.progress import ProgressCallback, report
 from lipofill.retries import Attempts
 from lipofill.v1 import patient_service_pb2 as pb
 from lipofill.v1 import plan_pb2
-
-if TYPE_CHECKING:
-    from lipofill.connection import Connection
 
 CHUNK_BYTES = 1 << 20
 _FORMATS = {".obj": pb.OBJ, ".ply": pb.PLY, ".stl": pb.STL}
@@ -76,9 +74,9 @@ class _Chunks:
 class Scans:
     """The scans of patients."""
 
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-        self._stub = connection.patient_stub
+    def __init__(self, channel: Channel) -> None:
+        self._channel = channel
+        self._stub = channel.patient_stub
 
     def upload(
         self,
@@ -116,22 +114,20 @@ class Scans:
         if path.suffix.lower() not in _FORMATS:
             raise InvalidArgumentError(f"scan file {path}: '{path.suffix}' is not one of {', '.join(_FORMATS)}")
         scan = self.announce(patient, path, unit=unit)
-        attempts = Attempts(self._connection.retry, True)
+        attempts = Attempts(self._channel.retry, True)
         while not scan.complete:
             try:
                 return self._send(_Chunks(path, scan, progress))
             except grpc.RpcError as problem:
-                error: LipofillError = error_from_call(problem, self._connection.server)
+                error: LipofillError = error_from_call(problem, self._channel.server)
             if not attempts.wait_after(error):
                 raise error from None
             scan = self.get(scan.name)
         return scan
 
     def _send(self, chunks: _Chunks) -> pb.Scan:
-        """Sends one stream to its end, which an exception of the progress callback, or in this
-        thread, brings about early.
-        """
-        call = self._stub.UploadScan.future(iter(chunks), metadata=self._connection.metadata())
+        """Sends one stream to its end; an exception of the callback, or in this thread, ends it."""
+        call = self._stub.UploadScan.future(iter(chunks), metadata=self._channel.metadata())
         try:
             scan = call.result()
         except grpc.RpcError:
@@ -158,23 +154,23 @@ class Scans:
             size_bytes=path.stat().st_size,
             sha256=digest,
         )
-        return self._connection.call(self._stub.CreateScan, request)
+        return self._channel.call(self._stub.CreateScan, request)
 
     def get(self, name: str) -> pb.Scan:
-        return self._connection.call(self._stub.GetScan, pb.GetScanRequest(name=name))
+        return self._channel.call(self._stub.GetScan, pb.GetScanRequest(name=name))
 
     def list(self, patient: str) -> Iterator[pb.Scan]:
         """Of one patient, by name."""
-        return self._connection.paged(self._stub.ListScans, pb.ListScansRequest(parent=patient), "scans")
+        return self._channel.paged(self._stub.ListScans, pb.ListScansRequest(parent=patient), "scans")
 
     def download_mesh(self, name: str) -> Meshes:
         """The surface of a complete scan as it was read: ``scan.points`` in mm, ``scan.cells``."""
         request = pb.DownloadScanMeshRequest(name=name)
         stream = self._stub.DownloadScanMesh(
-            request, timeout=self._connection.timeout_s, metadata=self._connection.metadata()
+            request, timeout=self._channel.timeout_s, metadata=self._channel.metadata()
         )
-        return meshes_from_slices(self._connection.stream_items(stream))
+        return meshes_from_slices(self._channel.stream_items(stream))
 
     def delete(self, name: str) -> None:
         """FailedPreconditionError while a model was built from it."""
-        self._connection.delete(self._stub.DeleteScan, pb.DeleteScanRequest(name=name))
+        self._channel.delete(self._stub.DeleteScan, pb.DeleteScanRequest(name=name))

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Dict, Iterable, List
+from typing import Any, Dict, Iterable, List
 
 import numpy as np
 import numpy.typing as npt
 
+from lipofill.channel import Channel
 from lipofill.v1 import simulation_pb2
 from lipofill.v1 import simulation_service_pb2 as pb
-
-if TYPE_CHECKING:
-    from lipofill.connection import Connection
 
 
 class Series:
@@ -44,13 +42,13 @@ class Series:
         return self._columns[name]
 
 
-def fetch_series(connection: Connection, simulation: str) -> Series:
+def fetch_series(channel: Channel, simulation: str) -> Series:
     """All rows of a simulation so far."""
     rows: List[simulation_pb2.SeriesRow] = []
     while True:
         after = rows[-1].step if rows else 0
         request = pb.GetSeriesRequest(name=simulation, after_step=after)
-        response = connection.call(connection.simulation_stub.GetSeries, request)
+        response = channel.call(channel.simulation_stub.GetSeries, request)
         rows.extend(response.rows)
         if not response.more or not response.rows:
             return Series(rows)

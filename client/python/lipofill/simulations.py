@@ -5,8 +5,9 @@ from __future__ import annotations
 import time
 from contextlib import suppress
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Callable, Iterator, Optional, Sequence, Type, TypeVar
+from typing import Any, Callable, Iterator, Optional, Sequence, Type, TypeVar
 
+from lipofill.channel import Channel
 from lipofill.errors import (
     DeadlineExceededError,
     FailedPreconditionError,
@@ -21,9 +22,6 @@ from lipofill.v1 import geometry_pb2
 from lipofill.v1 import simulation_pb2 as messages
 from lipofill.v1 import simulation_service_pb2 as pb
 from lipofill.watching import Watch, watch_request
-
-if TYPE_CHECKING:
-    from lipofill.connection import Connection
 
 # Setting up a simulation of a large model takes the daemon minutes.
 CREATION_TIMEOUT_S = 600.0
@@ -56,13 +54,13 @@ class Simulation:
         ``simulations/{simulation}``
     """
 
-    def __init__(self, connection: Connection, name: str) -> None:
+    def __init__(self, channel: Channel, name: str) -> None:
         self.name = name if "/" in name else f"simulations/{name}"
-        self._connection = connection
-        self._stub = connection.simulation_stub
+        self._channel = channel
+        self._stub = channel.simulation_stub
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self.name} at {self._connection.server}>"
+        return f"<{type(self).__name__} {self.name} at {self._channel.server}>"
 
     def __enter__(self: Self) -> Self:
         if self.get().state == messages.Simulation.READY:
@@ -79,27 +77,27 @@ class Simulation:
 
     def get(self) -> messages.Simulation:
         """As it is now: state, reason, plan and summary."""
-        return self._connection.call(self._stub.GetSimulation, pb.GetSimulationRequest(name=self.name))
+        return self._channel.call(self._stub.GetSimulation, pb.GetSimulationRequest(name=self.name))
 
     def start(self) -> messages.Simulation:
         """FailedPreconditionError unless it is READY."""
-        return self._connection.call(self._stub.StartSimulation, pb.StartSimulationRequest(name=self.name))
+        return self._channel.call(self._stub.StartSimulation, pb.StartSimulationRequest(name=self.name))
 
     def pause(self) -> messages.Simulation:
         """Answers within one step."""
-        return self._connection.call(self._stub.PauseSimulation, pb.PauseSimulationRequest(name=self.name))
+        return self._channel.call(self._stub.PauseSimulation, pb.PauseSimulationRequest(name=self.name))
 
     def resume(self) -> messages.Simulation:
         """FailedPreconditionError unless it is PAUSED."""
-        return self._connection.call(self._stub.ResumeSimulation, pb.ResumeSimulationRequest(name=self.name))
+        return self._channel.call(self._stub.ResumeSimulation, pb.ResumeSimulationRequest(name=self.name))
 
     def stop(self) -> messages.Simulation:
         """Ends it in state STOPPED, keeping what it reached."""
-        return self._connection.call(self._stub.StopSimulation, pb.StopSimulationRequest(name=self.name))
+        return self._channel.call(self._stub.StopSimulation, pb.StopSimulationRequest(name=self.name))
 
     def delete(self) -> None:
         """Stops it first when it runs."""
-        self._connection.delete(self._stub.DeleteSimulation, pb.DeleteSimulationRequest(name=self.name))
+        self._channel.delete(self._stub.DeleteSimulation, pb.DeleteSimulationRequest(name=self.name))
 
     def inject(
         self,
@@ -116,43 +114,43 @@ class Simulation:
         injection = messages.Injection(
             zone=zone, volume_ml=volume_ml, rate_ml_per_s=rate_ml_per_s, start_s=start_s, site=site
         )
-        return self._connection.call(self._stub.Inject, pb.InjectRequest(name=self.name, injection=injection))
+        return self._channel.call(self._stub.Inject, pb.InjectRequest(name=self.name, injection=injection))
 
     def checkpoint(self, checkpoint_id: str = "") -> pb.Checkpoint:
         """Keeps its state."""
         request = pb.CreateCheckpointRequest(parent=self.name, checkpoint_id=checkpoint_id)
-        return self._connection.call(self._stub.CreateCheckpoint, request)
+        return self._channel.call(self._stub.CreateCheckpoint, request)
 
     def checkpoints(self) -> Iterator[pb.Checkpoint]:
         """Those made by clients and those the daemon makes to go on from after its own end."""
         request = pb.ListCheckpointsRequest(parent=self.name)
-        return self._connection.paged(self._stub.ListCheckpoints, request, "checkpoints")
+        return self._channel.paged(self._stub.ListCheckpoints, request, "checkpoints")
 
     def restore(self, checkpoint: str) -> messages.Simulation:
         """Goes back to a checkpoint on its course; frames then come in a new epoch."""
-        return self._connection.call(self._stub.RestoreSimulation, pb.RestoreSimulationRequest(checkpoint=checkpoint))
+        return self._channel.call(self._stub.RestoreSimulation, pb.RestoreSimulationRequest(checkpoint=checkpoint))
 
     def branch(self, checkpoint: str, *, start: bool = False) -> Simulation:
         """A new simulation that begins from a checkpoint of this one."""
         request = pb.RestoreSimulationRequest(checkpoint=checkpoint, as_new=True, start=start)
-        return Simulation(self._connection, self._connection.call(self._stub.RestoreSimulation, request).name)
+        return Simulation(self._channel, self._channel.call(self._stub.RestoreSimulation, request).name)
 
     def series(self) -> Series:
         """The figures of every step so far."""
-        return fetch_series(self._connection, self.name)
+        return fetch_series(self._channel, self.name)
 
     def evaluate(self, target_scan: str) -> pb.Evaluation:
         """Distance of the simulated skin to a target scan, ``patients/{patient}/scans/{scan}``, in
         the same frame [mm].
         """
         request = pb.EvaluateSimulationRequest(name=self.name, target_scan=target_scan)
-        return self._connection.call(self._stub.EvaluateSimulation, request)
+        return self._channel.call(self._stub.EvaluateSimulation, request)
 
     def tissue_deck(self) -> bytes:
         """The tissue at rest under the pressure of its films, as an Abaqus/CalculiX input deck."""
         request = pb.ExportTissueDeckRequest(name=self.name)
-        stream = self._stub.ExportTissueDeck(request, metadata=self._connection.metadata())
-        return b"".join(piece.data for piece in self._connection.stream_items(stream))
+        stream = self._stub.ExportTissueDeck(request, metadata=self._channel.metadata())
+        return b"".join(piece.data for piece in self._channel.stream_items(stream))
 
     def watch(
         self,
@@ -198,7 +196,7 @@ class Simulation:
             An iterator over Frame and a context manager.
         """
         request = watch_request(self.name, **choices)
-        return Watch(self._connection, request, patience_s=patience_s, on_reconnect=on_reconnect)
+        return Watch(self._channel, request, patience_s=patience_s, on_reconnect=on_reconnect)
 
     def final_frame(self, *, meshes: Sequence[str] = ()) -> Frame:
         """The last frame of a simulation that has ended; NotFoundError where the daemon keeps
@@ -248,13 +246,13 @@ class Simulation:
 class Simulations:
     """The simulations of a daemon."""
 
-    def __init__(self, connection: Connection) -> None:
-        self._connection = connection
-        self._stub = connection.simulation_stub
+    def __init__(self, channel: Channel) -> None:
+        self._channel = channel
+        self._stub = channel.simulation_stub
 
     def __getitem__(self, name: str) -> Simulation:
         """A handle; the daemon is not asked whether it exists."""
-        return Simulation(self._connection, name)
+        return Simulation(self._channel, name)
 
     def create(
         self,
@@ -274,14 +272,24 @@ class Simulations:
         request = pb.CreateSimulationRequest(
             simulation_id=simulation_id, display_name=display_name, spec=spec, start=start
         )
-        made = self._connection.call(self._stub.CreateSimulation, request, timeout_s=CREATION_TIMEOUT_S)
-        return Simulation(self._connection, made.name)
+        made = self._channel.call(self._stub.CreateSimulation, request, timeout_s=CREATION_TIMEOUT_S)
+        return Simulation(self._channel, made.name)
 
     def check(self, spec: messages.SimulationSpec) -> messages.Simulation:
         """What `create` would answer, or raise; nothing is kept."""
         request = pb.CreateSimulationRequest(spec=spec, validate_only=True)
-        return self._connection.call(self._stub.CreateSimulation, request, timeout_s=CREATION_TIMEOUT_S)
+        return self._channel.call(self._stub.CreateSimulation, request, timeout_s=CREATION_TIMEOUT_S)
+
+    def check_plan(self, spec: messages.SimulationSpec) -> pb.CheckPlanResponse:
+        """Where the zones of a plan are on the model that the spec names, what is wrong with it and
+        what is worth knowing.
+
+        A plan that is wrong raises nothing: see ``violations`` of what is returned. No simulation
+        is made.
+        """
+        request = pb.CheckPlanRequest(spec=spec)
+        return self._channel.call(self._stub.CheckPlan, request, timeout_s=CREATION_TIMEOUT_S)
 
     def list(self) -> Iterator[messages.Simulation]:
         """All, by name."""
-        return self._connection.paged(self._stub.ListSimulations, pb.ListSimulationsRequest(), "simulations")
+        return self._channel.paged(self._stub.ListSimulations, pb.ListSimulationsRequest(), "simulations")

@@ -26,7 +26,7 @@ class Topologies:
         with self._lock:
             return self._kept.get(self._key(request))
 
-    def keep(self, request: pb.WatchRequest, meshes: Meshes) -> None:
+    def remember(self, request: pb.WatchRequest, meshes: Meshes) -> None:
         key = self._key(request)
         with self._lock:
             self._kept[key] = meshes

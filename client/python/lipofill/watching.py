@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 import uuid
 from types import TracebackType
-from typing import TYPE_CHECKING, Callable, Iterator, Literal, Optional, Sequence, Type
+from typing import Callable, Iterator, Literal, Optional, Sequence, Type
 
 import grpc
 
+from lipofill.channel import Channel
 from lipofill.errors import (
     DeadlineExceededError,
     LipofillError,
@@ -20,9 +21,6 @@ from lipofill.frames import Frame, Meshes, StreamAssembler
 from lipofill.rpc_types import ResponseStream
 from lipofill.silence import SilenceWatch
 from lipofill.v1 import frame_service_pb2 as pb
-
-if TYPE_CHECKING:
-    from lipofill.connection import Connection
 
 _SILENT_HEARTBEATS = 4
 _DEFAULT_HEARTBEAT_MS = 10_000.0
@@ -63,7 +61,7 @@ def watch_request(
 class Watch:
     """Iterates over frames. A context manager: entering it opens the stream, leaving it closes it.
 
-        run = connection.run(plan)
+        run = channel.run(plan)
         with run.watch(delivery="EVERY", meshes=["skin"]) as frames, run:  # watched before it starts: none is missed
             for frame in frames:
                 print(frame.time_s, frame["skin.displacement"].max())
@@ -84,13 +82,13 @@ class Watch:
 
     def __init__(
         self,
-        connection: Connection,
+        channel: Channel,
         request: pb.WatchRequest,
         *,
         patience_s: float = 30.0,
         on_reconnect: Optional[Callable[[LipofillError], object]] = None,
     ) -> None:
-        self._connection = connection
+        self._channel = channel
         self._request = request
         self._patience_s = patience_s
         self._on_reconnect = on_reconnect
@@ -101,7 +99,7 @@ class Watch:
         self._ended = False
         self._broken_since: Optional[float] = None
         self._came_first: Optional[pb.WatchResponse] = None
-        self._assembler = StreamAssembler(connection.topologies.get(request))
+        self._assembler = StreamAssembler(channel.topologies.get(request))
 
     @property
     def meshes(self) -> Meshes:
@@ -152,7 +150,7 @@ class Watch:
     def _open(self) -> ResponseStream[pb.WatchResponse]:
         self._request.known_topology_hash = self._assembler.meshes.topology_hash
         self._assembler = StreamAssembler(self._assembler.meshes)
-        stream = self._connection.frame_stub.Watch(self._request, metadata=self._connection.metadata())
+        stream = self._channel.frame_stub.Watch(self._request, metadata=self._channel.metadata())
         heartbeat_ms = self._request.heartbeat_ms if self._request.HasField("heartbeat_ms") else _DEFAULT_HEARTBEAT_MS
         self._silence = SilenceWatch(_SILENT_HEARTBEATS * heartbeat_ms / 1e3, stream.cancel)
         self._stream = stream
@@ -176,8 +174,8 @@ class Watch:
             return None
         except grpc.RpcError as error:
             if self._silence.was_silent:
-                raise UnavailableError(f"nothing came from {self._connection.server}, not even a heartbeat") from None
-            raise error_from_call(error, self._connection.server) from None
+                raise UnavailableError(f"nothing came from {self._channel.server}, not even a heartbeat") from None
+            raise error_from_call(error, self._channel.server) from None
 
     def _next_of_stream(self) -> Optional[Frame]:
         """The next frame; none at the end of the stream."""
@@ -189,7 +187,7 @@ class Watch:
 
     def _took(self, frame: Frame) -> None:
         self._request.seen_epoch, self._request.seen_sequence = frame.epoch, frame.sequence
-        self._connection.topologies.keep(self._request, frame.meshes)
+        self._channel.topologies.remember(self._request, frame.meshes)
         self._seen_any, self._broken_since = True, None
         if self._request.max_unacknowledged_frames > 0 and not frame.end:
             self._to_acknowledge = frame
@@ -199,8 +197,8 @@ class Watch:
         if frame is None:
             return
         try:
-            self._connection.call(
-                self._connection.frame_stub.AcknowledgeFrame,
+            self._channel.call(
+                self._channel.frame_stub.AcknowledgeFrame,
                 pb.AcknowledgeFrameRequest(
                     simulation=self._request.simulation,
                     viewer=self._request.viewer,
@@ -218,7 +216,7 @@ class Watch:
 
     def _resume_after(self, error: LipofillError) -> None:
         """Waits before the stream is opened anew; raises where it should not be."""
-        patience_s = self._patience_s if self._seen_any else self._connection.retry.patience_s
+        patience_s = self._patience_s if self._seen_any else self._channel.retry.patience_s
         fell_behind = isinstance(error, ResourceExhaustedError) and (self._seen_any or error.retry_delay_s is not None)
         now = time.monotonic()
         if self._broken_since is None:

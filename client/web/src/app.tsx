@@ -4,7 +4,8 @@ import { useEffect } from "preact/hooks";
 import { setToken, token } from "./api/client";
 import { Dashboard } from "./dashboard/dashboard";
 import { openSample } from "./plan/actions";
-import { notice, plan } from "./plan/state";
+import { plan } from "./plan/state";
+import { notice } from "./activity";
 import { Planner } from "./planner";
 
 const page = signal(location.hash);

@@ -1,5 +1,6 @@
 // Keys: 1 to 4 the steps, space run or pause, arrows through time, Esc out of a tool.
-import { frame, hasResult, lookAt, runOrPause, store } from "./run/run";
+import { lookAt, runOrPause } from "./run/run";
+import { frame, hasResult, store } from "./run/state";
 import { brushMm, tool } from "./plan/tools";
 import { compare, quantity, step, type Step } from "./stage/stage_state";
 

@@ -1,19 +1,20 @@
 // The planner: four steps beside the picture.
 import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { busy, modelIsCurrent, problem, scan, violations, zones } from "./plan/state";
+import { busy, problem } from "./activity";
+import { bindPlanCheck } from "./plan/check";
+import { modelIsCurrent, scan, violations, zones } from "./plan/state";
 import { tool } from "./plan/tools";
-import { connection, hasResult, simulation } from "./run/run";
+import { connection, distance, hasResult } from "./run/state";
 import { FacePanel } from "./panels/face_panel";
 import { FatPanel } from "./panels/fat_panel";
 import { Figures } from "./panels/figures";
 import { onKey } from "./keyboard";
 import { RunPanel } from "./panels/run_panel";
 import { Stage } from "./stage/stage";
-import { distance, quantity, step, type Step } from "./stage/stage_state";
+import { quantity, step, type Step } from "./stage/stage_state";
 import { Timeline } from "./stage/timeline";
 import { TissuePanel } from "./panels/tissue_panel";
-import { bindZonePreview } from "./stage/zone_preview";
 
 const steps: { key: Step; label: string; done: () => boolean }[] = [
   { key: "face", label: "Face", done: () => scan.value !== undefined },
@@ -82,12 +83,9 @@ function Problem() {
 export function Planner() {
   useEffect(() => {
     const ends = [
-      bindZonePreview(),
-      // Distances belong to the simulation they were measured on.
+      bindPlanCheck(() => step.value === "fat"),
       effect(() => {
-        if (simulation.value?.name !== undefined) return;
-        distance.value = undefined;
-        if (quantity.peek() === "distance") quantity.value = "displacement";
+        if (distance.value === undefined && quantity.peek() === "distance") quantity.value = "displacement";
       }),
     ];
     window.addEventListener("keydown", onKey);

@@ -70,7 +70,7 @@ void film_solve(benchmark::State& state) {
   if (solver.pressure_solver().is_lagged()) {
     std::vector<Eigen::VectorXd> mobility;
     solver.measure_mobility(before, mobility);
-    solver.pressure_solver().keep_mobility(mobility);
+    solver.pressure_solver().renew_preconditioner(mobility);
   }
   const Eigen::VectorXd gap = before.volume - factor.compliance() * before.pressure;
   for (auto _ : state) {

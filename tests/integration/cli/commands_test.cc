@@ -112,6 +112,21 @@ TEST_F(CommandsTest, ModelAndSimulationStepByStep) {
   EXPECT_EQ(tell("operation get nothing").exit_code, 4);
 }
 
+TEST_F(CommandsTest, ChecksAPlanOnAModelAndMakesNothing) {
+  ask("patient create --id p");
+  const std::string model = ask("model build p plan.json")["name"];
+  const auto check = ask("plan check plan.json --model " + model);
+  EXPECT_EQ(check["zones"][0]["name"], "middle");
+  EXPECT_EQ(check["violations"].size(), 0u);
+  EXPECT_THAT(tell("plan check plan.json --model " + model).output, HasSubstr("The daemon takes this plan."));
+  write_plan("thin.json", "/simulation/fat", nlohmann::json{{"density_kg_m3", -1}});
+  const CommandResult refused = tell("plan check thin.json --model " + model);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.output, HasSubstr("spec.fat.density_kg_m3 is -1 kg/m3"));
+  EXPECT_EQ(tell("plan check plan.json --model patients/p/models/none").exit_code, 4);
+  EXPECT_EQ(ask("simulation list")["simulations"].size(), 0u);
+}
+
 TEST_F(CommandsTest, KeepsAStateAndGoesBackToIt) {
   ask("patient create --id p");
   const std::string model = ask("model build p plan.json")["name"];

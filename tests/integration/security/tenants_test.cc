@@ -53,6 +53,7 @@ std::vector<Row> rows_about(const Possessions& theirs) {
       {"PatientService/DownloadModelMesh", named(theirs.model)},
       {"PatientService/DownloadScanMesh", named(theirs.scan)},
       {"SimulationService/CreateSimulation", R"({"spec":{"model":")" + theirs.model + "\"}}"},
+      {"SimulationService/CheckPlan", R"({"spec":{"model":")" + theirs.model + "\"}}"},
       {"SimulationService/GetSimulation", named(theirs.simulation)},
       {"SimulationService/GetSimulation", R"({"name":")" + theirs.simulation + R"(","readMask":"nose"})"},
       {"SimulationService/StartSimulation", named(theirs.simulation)},

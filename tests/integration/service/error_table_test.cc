@@ -99,6 +99,8 @@ std::vector<Row> simulation_rows() {
       absent(simulations + "CreateSimulation",
              R"({"spec":{"model":"patients/anna/models/none","films":[{"name":"f","belowLayer":"skin","nXi":2,"nEta":2,
                  "zones":[{"name":"z","box":{"xiMin":0,"xiMax":1,"etaMin":0,"etaMax":1}}]}]},"validateOnly":true})"),
+      invalid(simulations + "CheckPlan", "{}", {"spec"}),
+      absent(simulations + "CheckPlan", R"({"spec":{"model":"patients/anna/models/none"}})"),
       invalid(simulations + "GetSimulation", R"({"name":"simulations/x","readMask":"colour"})", {"read_mask.paths[0]"}),
       absent(simulations + "GetSimulation", R"({"name":"simulations/none"})"),
       invalid(simulations + "ListSimulations", R"({"readMask":"summary.colour"})", {"read_mask.paths[0]"}),

@@ -12,17 +12,22 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// One file of a tar: header, contents, padding.
-std::string tar_file(const std::string& name, const std::string& contents) {
+/// The header of one file of a tar, which claims to hold `size` bytes.
+std::string tar_header(const std::string& name, uint64_t size, char type = '0') {
   std::string header(512, '\0');
   name.copy(header.data(), 100);
-  snprintf(header.data() + 124, 12, "%011o", static_cast<unsigned>(contents.size()));
-  header[156] = '0';
+  snprintf(header.data() + 124, 12, "%011llo", static_cast<unsigned long long>(size));
+  header[156] = type;
   header.replace(148, 8, "        ");
   unsigned sum = 0;
   for (const char c : header) sum += static_cast<unsigned char>(c);
   snprintf(header.data() + 148, 8, "%06o", sum);
-  return header + contents + std::string((512 - contents.size() % 512) % 512, '\0');
+  return header;
+}
+
+/// One file of a tar: header, contents, padding.
+std::string tar_file(const std::string& name, const std::string& contents, char type = '0') {
+  return tar_header(name, contents.size(), type) + contents + std::string((512 - contents.size() % 512) % 512, '\0');
 }
 
 std::string plist(const std::string& shape, const std::string& dtype = "int16") {
@@ -85,6 +90,31 @@ TEST_F(InvesaliusTest, RefusesWhatIsNoSuchProject) {
               HasSubstr("asks for 216"));
   const std::string whole = gzipped(tar_file("x/main.plist", plist(kShape)) + tar_file("x/matrix.dat", matrix()));
   EXPECT_THAT(refusal_of(whole.substr(0, whole.size() - 30)), HasSubstr("cut short"));
+}
+
+/// Neither gzip nor a name within 100 bytes is asked for; a folder of the right name is no file.
+TEST_F(InvesaliusTest, ReadsWhateverTarWrites) {
+  const std::string path = std::string(200, 'f') + "/main.plist";
+  const std::string record = " path=" + path + "\n";
+  const std::string length = std::to_string(record.size() + 3);
+  const std::string tar = tar_file("x/main.plist", "", '5') + tar_file("pax", length + record, 'x') +
+                          tar_file("cut", plist(kShape)) + tar_file("x/matrix.dat", matrix()) + std::string(1024, '\0');
+  const auto volume = convert_invesalius(write("a.inv3", tar), folder_ / "a.mha");
+  ASSERT_TRUE(volume.ok()) << volume.status();
+  EXPECT_EQ(volume->size, (std::array<uint64_t, 3>{4, 3, 2}));
+}
+
+/// Refused by what they claim, before anything of it is unpacked or reserved.
+TEST_F(InvesaliusTest, RefusesWhatUnpacksToTooMuch) {
+  EXPECT_THAT(refusal_of(gzipped(tar_file("x/main.plist", std::string(2 << 20, ' ')) + std::string(1024, '\0'))),
+              HasSubstr("main.plist of 2097152 bytes, must have at most 1048576"));
+  const uint64_t eight_gibibytes = (uint64_t{1} << 33) - 512;  // the most that a plain header can say
+  std::string bomb;
+  for (int k = 0; k < 3; ++k) bomb += tar_header("x/zeros", eight_gibibytes);
+  EXPECT_THAT(refusal_of(gzipped(bomb)), HasSubstr("cut short"));
+  std::string pax = tar_file("pax", "25 size=1099511627776123\n", 'x') + tar_header("x/zeros", 0);
+  EXPECT_THAT(refusal_of(gzipped(pax + std::string(1024, '\0'))),
+              HasSubstr("claims to hold more than the 17179869184 bytes allowed"));
 }
 
 TEST_F(InvesaliusTest, TheExampleHeadHasSkin) {

@@ -132,7 +132,7 @@ TEST(LaggedPressureRoute, AnOldMobilityCostsIterationsNotTheAnswer) {
     route.set_walls(tissue.walls);
     ASSERT_TRUE(route.is_lagged());
     const std::vector<Eigen::VectorXd> mobility = {tissue.take_thickness(1e-3, 0.01)};
-    route.keep_mobility(PressureSystem({&tissue.projection}), mobility);
+    route.renew_preconditioner(PressureSystem({&tissue.projection}), mobility);
     tissue.take_thickness(height_now, 0.01);
     expect_solved(tissue, route, tissue.hold_none(), 1e-4);
     EXPECT_EQ(route.counts().fallbacks, 0);
@@ -145,7 +145,7 @@ TEST(LaggedPressureRoute, HeldCellsKeepTheirPressure) {
   LaggedPressureRoute route;
   route.set_walls(tissue.walls);
   const std::vector<Eigen::VectorXd> mobility = {tissue.take_thickness(1e-3, 0.01)};
-  route.keep_mobility(PressureSystem({&tissue.projection}), mobility);
+  route.renew_preconditioner(PressureSystem({&tissue.projection}), mobility);
   std::vector<char> two = tissue.hold_none();
   two[3] = two[100] = 1;
   expect_solved(tissue, route, two, 1e-4);
@@ -160,7 +160,7 @@ TEST(LaggedPressureRoute, ADryFilmAndAMobilityOfAnotherWorldFallBackToTheDirectS
   LaggedPressureRoute route;
   route.set_walls(tissue.walls);
   const std::vector<Eigen::VectorXd> mobility = {tissue.take_thickness(30e-3, 100.0)};
-  route.keep_mobility(PressureSystem({&tissue.projection}), mobility);
+  route.renew_preconditioner(PressureSystem({&tissue.projection}), mobility);
   tissue.take_thickness(0.0, 0.01);
   expect_solved(tissue, route, tissue.hold_none(), 1e-11);
   EXPECT_EQ(route.counts().fallbacks, 1);

@@ -39,7 +39,7 @@ TEST(PressureSolver, ManyCellsAreSolvedByIterations) {
   PressureSolver solver({&tissue.projection});
   solver.set_walls(tissue.walls);
   ASSERT_TRUE(solver.is_lagged());
-  solver.keep_mobility({tissue.take_thickness(1e-3, 0.01)});
+  solver.renew_preconditioner({tissue.take_thickness(1e-3, 0.01)});
   expect_solved(tissue, solver, tissue.hold_none(), 1e-4);
   EXPECT_EQ(solver.iterative_solves(), 1);
   EXPECT_GT(solver.iterations(), 0);

@@ -310,7 +310,8 @@ TEST(WallPressure, IsThatOfTheCellsByTheShareTheyCover) {
   tissue.n_eta = 2;
   // Two cells over three quarters of the width: borders at 0, 0.375, 0.75.
   const film::FilmGrid film = film::make_film_grid({0.0, 0.75, 0.0, 1.0}, 2, 1, {0, 0});
-  const auto walls = exporting::spread_over_wall(tissue, film, Eigen::Vector2d(100.0, 300.0));
+  const auto walls = exporting::spread_over_wall(tissue, film::cut_cells(film, tissue.n_xi, tissue.n_eta),
+                                                 Eigen::Vector2d(100.0, 300.0));
   ASSERT_EQ(walls.size(), 6u);
   const std::array<double, 3> expected = {100.0, 200.0, 300.0};
   for (size_t k = 0; k < walls.size(); ++k) {

@@ -43,6 +43,25 @@ TEST(SharedParts, AreOneForEqualZonesAndGoWithTheLastSimulation) {
   expect_sizes(*model, 0, 0, 0);
 }
 
+/// Models that differ in stiffness alone are copies of one, and share its parts.
+TEST(SharedParts, AreOneForTissuesOfOtherStiffness) {
+  const auto model = make_small_model();
+  const plan::SimulationSpec spec = make_small_plan();
+  model::FaceModelSpec stiffer_spec = make_small_model_spec();
+  stiffer_spec.layers[0].material.youngs_modulus = 2.37e5;
+  const auto built = model::build_face_model(stiffer_spec, nullptr);
+  ASSERT_TRUE(built.ok()) << built.status();
+  auto stiffer = std::make_shared<model::FaceModel>(*model);
+  stiffer->layers[0].material.youngs_modulus = 2.37e5;
+  stiffer->content_hash = (*built)->content_hash;
+  const Pointer soft = create(model, spec);
+  const Pointer stiff = create(stiffer, spec);
+  expect_sizes(*model, 1, 1, 1);
+  const std::string of_stiff = hash_after(*stiff, 12);
+  EXPECT_EQ(of_stiff, hash_after(*create(*built, spec), 12));
+  EXPECT_NE(of_stiff, hash_after(*soft, 12));
+}
+
 TEST(SharedParts, AreApartWhereThePlanMakesThemSo) {
   const auto model = make_small_model();
   const plan::SimulationSpec spec = make_small_plan();

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/field_violations.h"
+#include "core/simulation/plan_check.h"
 #include "tests/unit/simulation/small_case.h"
 
 namespace lipofill::simulation {
@@ -18,7 +19,8 @@ struct BadPlan {
   std::string description;  ///< part of it: the value or the bound
 };
 
-/// Spoils the small plan and expects to be told so.
+/// Spoils the small plan and expects to be told so, by whoever makes a simulation of it and by
+/// whoever only asks.
 class PlanIsRefused : public testing::TestWithParam<BadPlan> {};
 
 inline void expect_refused(const BadPlan& bad) {
@@ -28,11 +30,13 @@ inline void expect_refused(const BadPlan& bad) {
   const auto created = Simulation::create(make_small_model(), spec);
   ASSERT_FALSE(created.ok());
   EXPECT_EQ(created.status().code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_THAT(
-      field_violations_of(created.status()),
+  const auto is_told =
       testing::Contains(testing::AllOf(Field(&FieldViolation::field, bad.field),
-                                       Field(&FieldViolation::description, testing::HasSubstr(bad.description)))))
-      << created.status();
+                                       Field(&FieldViolation::description, testing::HasSubstr(bad.description))));
+  EXPECT_THAT(field_violations_of(created.status()), is_told) << created.status();
+  const auto check = check_plan_on_model(*make_small_model(), spec, nullptr);
+  ASSERT_TRUE(check.ok()) << check.status();
+  EXPECT_THAT(check->violations, is_told);
 }
 
 }  // namespace lipofill::simulation

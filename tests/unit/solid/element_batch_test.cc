@@ -17,6 +17,8 @@
 namespace lipofill::solid::testing {
 namespace {
 
+constexpr double kModulus = 1e5;
+
 /// Distorted hexahedra in a row, as many as a batch has lanes.
 struct Row {
   Box box{{kLanes, 1, 1}, {0.02, 0.004, 0.002}};
@@ -29,8 +31,8 @@ struct Row {
     for (int a = 0; a < mesh.n_nodes(); ++a) mesh.rest_positions.col(a) += 3e-4 * jitter.next_vector();
     for (int lane = 0; lane < kLanes; ++lane) {
       const HexNodes nodes = mesh.gather(lane, mesh.rest_positions);
-      K.push_back(compute_solid_shell_stiffness(nodes, compute_elasticity_matrix({1e5, 0.45, 1000.0})));
-      batch.set_lane(lane, mesh.hexahedra[lane], nodes, K.back());
+      K.push_back(compute_solid_shell_stiffness(nodes, compute_elasticity_matrix({kModulus, 0.45, 1000.0})));
+      batch.set_lane(lane, mesh.hexahedra[lane], nodes, K.back() / kModulus);
     }
   }
 
@@ -87,7 +89,7 @@ TEST(ElementBatch, ForcesMatchTheDefinition) {
     const Eigen::Matrix3Xd x = row.shaken(seed <= 15 ? 2e-4 : 3e-3, seed);
     Eigen::Matrix4Xd force = Eigen::Matrix4Xd::Zero(4, x.cols());
     ElementPose pose;
-    add_element_forces(row.batch, four_a_node(x).data(), pose, force.data());
+    add_element_forces(row.batch, fill_lanes(kModulus), four_a_node(x).data(), pose, force.data());
     const Expected expected(row, x);
     EXPECT_LT((force.topRows<3>() - expected.force).norm(), 1e-9 * expected.force.norm());
     double energy = 0.0;
@@ -105,7 +107,7 @@ TEST(ElementBatch, LeastCornerIsThatOfTheEdges) {
   const Eigen::Matrix3Xd x = row.shaken(1e-3, 5);
   Eigen::Matrix4Xd force = Eigen::Matrix4Xd::Zero(4, x.cols());
   ElementPose pose;
-  add_element_forces(row.batch, four_a_node(x).data(), pose, force.data());
+  add_element_forces(row.batch, fill_lanes(kModulus), four_a_node(x).data(), pose, force.data());
   for (int lane = 0; lane < kLanes; ++lane) {
     double least = 1.0;
     for (int a = 0; a < 8; ++a) {
@@ -120,7 +122,7 @@ TEST(ElementBatch, LeastCornerIsThatOfTheEdges) {
 /// full, and blocks are stored as they are and transposed.
 struct Shuffled {
   Row row;
-  std::vector<ElasticMaterial> materials{{1e5, 0.45, 1000.0}};
+  std::vector<ElasticMaterial> materials{{kModulus, 0.45, 1000.0}};
 
   Shuffled() {
     const int n = row.mesh.n_nodes();
@@ -143,13 +145,14 @@ TEST(ElementAssembler, MatchesTheDefinitionWhateverTheOrderOfNodes) {
   fixed[5] = {false, true, false};
   const SystemPattern pattern(mesh.n_nodes(), mesh.hexahedra, fixed);
   const ElementAssembler assembler(mesh, shuffled.materials, pattern);
+  const std::vector<double> moduli = assembler.spread_moduli(mesh, {kModulus});
   const Eigen::Matrix3Xd x = shuffled.row.shaken(2e-4, 3);
   NodeBlocks blocks(pattern);
   blocks.set_zero();
   std::vector<int> squeezed;
   Eigen::Matrix4Xd force = Eigen::Matrix4Xd::Zero(4, x.cols()), alone = force;
-  const ElementTotals totals = assembler.add(four_a_node(x), force, squeezed, blocks);
-  assembler.add_forces(four_a_node(x), alone, squeezed);
+  const ElementTotals totals = assembler.add(moduli, four_a_node(x), force, squeezed, blocks);
+  assembler.add_forces(moduli, four_a_node(x), alone, squeezed);
   EXPECT_EQ(std::memcmp(force.data(), alone.data(), sizeof(double) * force.size()), 0);
   EXPECT_TRUE(squeezed.empty());
   EXPECT_FALSE(totals.is_folded);
@@ -174,14 +177,15 @@ TEST(ElementAssembler, TellsWhatIsSqueezedAndFolded) {
   const Row row;
   const SystemPattern pattern(row.mesh.n_nodes(), row.mesh.hexahedra,
                               std::vector<std::array<bool, 3>>(row.mesh.n_nodes(), {false, false, false}));
-  const ElementAssembler assembler(row.mesh, {{1e5, 0.45, 1000.0}}, pattern);
-  const int node = row.mesh.hexahedra[2][6];  // hexahedra 2 and 3 share it
+  const ElementAssembler assembler(row.mesh, {{kModulus, 0.45, 1000.0}}, pattern);
+  const std::vector<double> moduli = assembler.spread_moduli(row.mesh, {kModulus});
+  const int node = row.mesh.hexahedra[2][6];  // of hexahedra 2 and 3
   for (const double share : {0.0, 0.8, 1.2}) {
     Eigen::Matrix3Xd x = row.mesh.rest_positions;
     x(2, node) -= share * 0.002;
     Eigen::Matrix4Xd force = Eigen::Matrix4Xd::Zero(4, x.cols());
     std::vector<int> squeezed;
-    const ElementTotals totals = assembler.add_forces(four_a_node(x), force, squeezed);
+    const ElementTotals totals = assembler.add_forces(moduli, four_a_node(x), force, squeezed);
     EXPECT_EQ(squeezed, share == 0.0 ? std::vector<int>() : std::vector<int>({2, 3})) << share;
     EXPECT_EQ(totals.is_folded, share > 1.0);
   }

@@ -31,7 +31,9 @@ struct Bar {
     std::vector<int> squeezed;
     NodeBlocks blocks(pattern);
     blocks.set_zero();
-    ElementAssembler(mesh, {kMaterial}, pattern).add(positions, force, squeezed, blocks);
+    const ElementAssembler assembler(mesh, {kMaterial}, pattern);
+    const std::vector<double> moduli = assembler.spread_moduli(mesh, {kMaterial.youngs_modulus});
+    assembler.add(moduli, positions, force, squeezed, blocks);
     blocks.write(pattern, {}, 0.0, stiffness.data(), K_G.valuePtr());
     return Eigen::MatrixXd(Eigen::SparseMatrix<double>(K_G.selfadjointView<Eigen::Lower>()));
   }

@@ -42,11 +42,11 @@ struct Slab {
     Eigen::Matrix4Xd positions = Eigen::Matrix4Xd::Zero(4, x.cols());
     positions.topRows<3>() = x;
     Eigen::Matrix4Xd force = Eigen::Matrix4Xd::Zero(4, x.cols());
-    const InversionBarrier barrier(mesh, {{kModulus, 0.49, 920.0}});
+    const InversionBarrier barrier(mesh);
     Result result{0.0, {}, {}};
     for (int e = 0; e < mesh.n_hexahedra(); ++e) {
-      result.energy += barrier.add_force(e, positions, force);
-      barrier.add_tangent(e, positions, pattern, values);
+      result.energy += barrier.add_force(e, kModulus, positions, force);
+      barrier.add_tangent(e, kModulus, positions, pattern, values);
     }
     result.force = Eigen::Matrix3Xd(force.topRows<3>()).reshaped();
     result.tangent = Eigen::MatrixXd(Eigen::SparseMatrix<double>(K.selfadjointView<Eigen::Lower>()));

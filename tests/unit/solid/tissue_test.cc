@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/field_violations.h"
 #include "core/solid/incompatible_modes.h"
 #include "core/solid/solid_shell.h"
 #include "tests/unit/solid/box_mesh.h"
@@ -282,6 +283,57 @@ TEST(Tissue, DependsOnTheLastAssembleAlone) {
   EXPECT_EQ(std::memcmp(fresh.internal_force().data(), moved.internal_force().data(), force_bytes), 0);
   EXPECT_EQ(std::memcmp(fresh.system_matrix().valuePtr(), moved.system_matrix().valuePtr(), matrix_bytes), 0);
   EXPECT_EQ(fresh.elastic_energy(), moved.elastic_energy());
+}
+
+void expect_same_bits(const Tissue& a, const Tissue& b) {
+  const size_t force_bytes = sizeof(double) * a.internal_force().size();
+  const size_t matrix_bytes = sizeof(double) * a.system_matrix().nonZeros();
+  EXPECT_EQ(std::memcmp(a.internal_force().data(), b.internal_force().data(), force_bytes), 0);
+  EXPECT_EQ(std::memcmp(a.system_matrix().valuePtr(), b.system_matrix().valuePtr(), matrix_bytes), 0);
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(a.n_dofs());
+  const Eigen::VectorXd stiffness = a.stiffness_times(ones);
+  EXPECT_EQ(std::memcmp(stiffness.data(), b.stiffness_times(ones).eval().data(), force_bytes), 0);
+  EXPECT_EQ(a.elastic_energy(), b.elastic_energy());
+}
+
+/// Under tension and squeezed flat in places, so that every term that knows the modulus has its
+/// say.
+TEST(Tissue, ModuliSetLaterGiveTheBitsOfATissueBuiltWithThem) {
+  Slab slab;
+  slab.materials[0].prestress = 300.0;
+  Tissue changed = slab.make();
+  const std::shared_ptr<const TissueStructure> structure = changed.structure();
+  Slab other = slab;
+  other.materials[0].youngs_modulus = 31234.5;
+  other.materials[1].youngs_modulus = 7.7e4;
+  Tissue built = other.make();
+  for (const double amplitude : {3e-4, 2e-3}) {
+    const Eigen::Matrix3Xd x = slab.deformed(amplitude, 4);
+    changed.assemble(x, kDt);
+    ASSERT_TRUE(changed.set_youngs_moduli({31234.5, 7.7e4}).ok());
+    changed.assemble(x, kDt);
+    built.assemble(x, kDt);
+    expect_same_bits(changed, built);
+    ASSERT_TRUE(changed.set_youngs_moduli({1e5, 2e4}).ok());
+    changed.compute_force(x);
+    EXPECT_GT((changed.internal_force() - built.internal_force()).norm(), 0.1 * built.internal_force().norm());
+  }
+  EXPECT_EQ(changed.structure(), structure);
+}
+
+TEST(Tissue, WrongModuliAreNamedAndChangeNothing) {
+  const Slab slab;
+  Tissue tissue = slab.make();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::vector<double>> wrong = {{1e5}, {1e5, 2e4, 1e4}, {0.0, 2e4}, {1e5, -1.0}, {1e5, nan}};
+  for (const std::vector<double>& moduli : wrong) {
+    EXPECT_EQ(tissue.set_youngs_moduli(moduli).code(), absl::StatusCode::kInvalidArgument);
+  }
+  EXPECT_EQ(field_violations_of(tissue.set_youngs_moduli({1e5, -1.0}))[0].field, "youngs_moduli[1]");
+  tissue.assemble(slab.deformed(3e-4, 4), kDt);
+  Tissue untouched = slab.make();
+  untouched.assemble(slab.deformed(3e-4, 4), kDt);
+  expect_same_bits(tissue, untouched);
 }
 
 TEST(Tissue, SeesElementsTurnedInsideOut) {

@@ -7,14 +7,14 @@ import { OperationService } from "@wire/operation_service_pb";
 import { PatientService } from "@wire/patient_service_pb";
 import { SimulationService } from "@wire/simulation_service_pb";
 
-const kept = "lipofill.token";
+const tokenKey = "lipofill.token";
 
 /** The bearer token calls carry; empty: none. It lives as long as the tab. */
-export const token = signal(sessionStorage.getItem(kept) ?? "");
+export const token = signal(sessionStorage.getItem(tokenKey) ?? "");
 
 export function setToken(value: string): void {
   token.value = value.trim();
-  sessionStorage.setItem(kept, token.value);
+  sessionStorage.setItem(tokenKey, token.value);
 }
 
 const withCredentials: Interceptor = (next) => (request) => {

@@ -114,7 +114,7 @@ class Progress {
   }
 
   /**
-   * Half a window at a time: frames keep coming, and a page that falls behind is never more than a
+   * Half a window at a time: frames go on coming, and a page that falls behind is never more than a
    * window old.
    */
   private acknowledge(): void {

@@ -64,12 +64,11 @@ async function listAll(signal: AbortSignal): Promise<Simulation[]> {
 }
 
 function choose(all: Simulation[]): Simulation[] {
-  const shown = all.filter(({ displayName }) => displayName !== "check-of-a-plan");
-  const ended = shown
+  const ended = all
     .filter((one) => !isLive(one))
     .sort((a, b) => age(a) - age(b))
     .slice(0, mostEnded);
-  return [...shown.filter(isLive), ...ended].sort((a, b) => rank(a) - rank(b) || age(a) - age(b));
+  return [...all.filter(isLive), ...ended].sort((a, b) => rank(a) - rank(b) || age(a) - age(b));
 }
 
 async function look(leave: AbortSignal, before: Map<string, { steps: bigint; at: number }>): Promise<void> {

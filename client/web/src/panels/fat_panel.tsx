@@ -2,6 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import { FatPreset, FatSchema, LigamentSchema, Pace, TimeControl_Goal, TimeControlSchema } from "@wire/simulation_pb";
 import { ligamentNames, readable } from "../plan/anatomy";
+import { remarks } from "../plan/check";
 import { freeName, newFilm, newInjection } from "../plan/new_plan";
 import { editPlan, modelIsCurrent, plan, region, zones } from "../plan/state";
 import { tool } from "../plan/tools";
@@ -280,6 +281,18 @@ function Time() {
   );
 }
 
+function Remarks() {
+  return (
+    <>
+      {remarks.value.map(({ field, description }) => (
+        <p class="hint" key={field}>
+          {field.replace(/^simulation\./, "")} {description}.
+        </p>
+      ))}
+    </>
+  );
+}
+
 export function FatPanel() {
   return (
     <>
@@ -289,6 +302,7 @@ export function FatPanel() {
       <Fat />
       <Ligaments />
       <Time />
+      <Remarks />
       <Complaint field="simulation.films" />
     </>
   );

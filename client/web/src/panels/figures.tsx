@@ -1,6 +1,7 @@
 // The figures a surgeon looks for first, and how they came about.
 import { readable } from "../plan/anatomy";
-import { lookAt, rows, simulation, timeShown } from "../run/run";
+import { lookAt } from "../run/run";
+import { rows, simulation, timeShown } from "../run/state";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { Plot } from "../widgets/plot";
 
@@ -75,6 +76,22 @@ function Zones() {
   );
 }
 
+/** What to know before relying on the figures. */
+function Remarks() {
+  const remarks = simulation.value?.summary?.remarks ?? [];
+  if (remarks.length === 0) return null;
+  return (
+    <section class="remarks" aria-label="Remarks">
+      <h3>Remarks</h3>
+      <ul>
+        {remarks.map((remark) => (
+          <li key={remark}>{remark}</li>
+        ))}
+      </ul>
+    </section>
+  );
+}
+
 export function Figures() {
   const row = rowNow();
   const all = rows.value;
@@ -95,6 +112,7 @@ export function Figures() {
       <Figure label="Skin rises" value={(row?.skinMaxDisplacementMm ?? 0).toFixed(1)} unit="mm" />
       <Figure label="Simulated time" value={(timeShown.value ?? row?.timeS ?? 0).toFixed(1)} unit="s" />
       <Zones />
+      <Remarks />
       {all.length > 1 && (
         <>
           <Plot

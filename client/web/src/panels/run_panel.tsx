@@ -7,23 +7,14 @@ import { simulations } from "../api/client";
 import { uploadScan } from "../api/upload";
 import { readable } from "../plan/anatomy";
 import { build } from "../plan/actions";
-import { attempt, busy, canRun, scanFile } from "../plan/state";
+import { canRun, scanFile } from "../plan/state";
+import { attempt, busy } from "../activity";
 import { liveSite, tool } from "../plan/tools";
 import { stateClass, stateWord } from "../run/exports";
-import {
-  close,
-  command,
-  create as createSimulation,
-  hasResult,
-  inject,
-  isRunning,
-  isUnderWay,
-  recorded,
-  simulation,
-  state,
-} from "../run/run";
+import { close, command, create as createSimulation, inject } from "../run/run";
+import { distance, hasResult, isRunning, isUnderWay, recorded, simulation, state } from "../run/state";
 import { FileButton, NumberField, Section, SelectField } from "../widgets/fields";
-import { distance, quantity } from "../stage/stage_state";
+import { quantity } from "../stage/stage_state";
 import { Exports, Recorded } from "./take_home";
 
 const more = signal({ zone: "", volumeMl: 0.5 as number | undefined, rateMlPerS: 1 as number | undefined });

@@ -3,9 +3,12 @@ import { signal } from "@preact/signals";
 import type { Simulation } from "@wire/simulation_pb";
 import { simulations } from "../api/client";
 import { writePlan } from "../plan/plan_file";
-import { attempt, canRun, plan, scanFile, tell } from "../plan/state";
-import { save, seriesCsv, stateWord, surfaceObj } from "../run/exports";
-import { hasResult, openExisting, rows, simulation } from "../run/run";
+import { canRun, plan, scanFile } from "../plan/state";
+import { attempt, tell } from "../activity";
+import { save, stateWord, surfaceObj } from "../run/exports";
+import { openExisting } from "../run/run";
+import { hasResult, rows, simulation } from "../run/state";
+import { writeSeries } from "../run/series_csv";
 import { FileButton, Section, SelectField } from "../widgets/fields";
 import { shownScene } from "../stage/stage_state";
 
@@ -38,7 +41,7 @@ export function Exports() {
           type="button"
           class="button"
           disabled={rows.value.length === 0}
-          onClick={() => save(`${name}.csv`, seriesCsv(rows.value))}
+          onClick={() => save(`${name}.csv`, writeSeries(rows.value, simulation.value?.spec?.probes ?? []))}
         >
           CSV
         </button>

@@ -2,22 +2,25 @@
 import { signal } from "@preact/signals";
 import { TissueLayer_Kind, TissueLayerSchema, TissuePreset } from "@wire/model_pb";
 import { create } from "@bufbuild/protobuf";
-import { cornersOf, landmarksOf, readable, regionLabels, type Side } from "../plan/anatomy";
+import { aroundOf, cornersOf, isCornered, landmarksOf, readable, regionLabels, type Side } from "../plan/anatomy";
 import { build } from "../plan/actions";
 import { freeName, resolutions, setResolution } from "../plan/new_plan";
-import { busy, editPlan, model, modelIsCurrent, plan, region, scan } from "../plan/state";
+import { editPlan, model, modelIsCurrent, plan, region, scan } from "../plan/state";
+import { busy } from "../activity";
 import { tool } from "../plan/tools";
 import { CheckField, Complaint, NumberField, Section, Segmented, SelectField } from "../widgets/fields";
 
 const side = signal<Side>("left");
-const chosen = signal("jaw");
+const chosen = signal("jaw_zones");
 export const showLayers = signal(false);
 export const layerShown = signal<boolean[]>([]);
 
 function chooseRegion(key: string, of: Side): void {
   [chosen.value, side.value] = [key, of];
   editPlan(({ model: spec }) => {
-    if (spec?.geometry.case === "scanRegion") spec.geometry.value.corners = cornersOf(key, of);
+    if (spec?.geometry.case !== "scanRegion") return;
+    spec.geometry.value.corners = isCornered(key) ? cornersOf(key, of) : [];
+    spec.geometry.value.around = isCornered(key) ? undefined : aroundOf(key, of);
   });
 }
 
@@ -41,6 +44,38 @@ function Region() {
         onChange={(next) => chooseRegion(chosen.value, next)}
       />
       {missing.length > 0 && <p class="hint">Needs: {missing.map(readable).join("; ")}</p>}
+      {region.value?.around ? <Surroundings /> : <Corners />}
+      <Complaint field="model.scan_region" />
+    </Section>
+  );
+}
+
+/** What the region goes around, and how much skin it takes beside that. */
+function Surroundings() {
+  const around = region.value?.around;
+  return (
+    <>
+      <p class="hint">Around {(around?.regions ?? []).map(readable).join("; ")}</p>
+      <NumberField
+        label="Margin"
+        unit="mm"
+        step={1}
+        min={2}
+        placeholder="12"
+        field="model.scan_region.around.margin_mm"
+        value={around?.marginMm}
+        onChange={(value) =>
+          editPlan(({ model: spec }) => {
+            if (spec?.geometry.case === "scanRegion") spec.geometry.value.around!.marginMm = value;
+          })
+        }
+      />
+    </>
+  );
+}
+
+function Corners() {
+  return (
       <div class="row" role="group" aria-label="Correct a corner by clicking">
         <span class="quiet">Correct corner</span>
         {[0, 1, 2, 3].map((index) => (
@@ -55,8 +90,6 @@ function Region() {
           </button>
         ))}
       </div>
-      <Complaint field="model.scan_region" />
-    </Section>
   );
 }
 

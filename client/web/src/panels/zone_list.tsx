@@ -2,6 +2,7 @@
 import { create } from "@bufbuild/protobuf";
 import { DiscSchema, WallSchema, ZonePairSchema, type Film, type Zone } from "@wire/simulation_pb";
 import { readable, zoneNames } from "../plan/anatomy";
+import { placedZones } from "../plan/check";
 import { freeName, newZone } from "../plan/new_plan";
 import { chart, editPlan, plan, region, zones } from "../plan/state";
 import { skinPointAt, tool } from "../plan/tools";
@@ -33,8 +34,18 @@ function addZone(film: number, choice: string): void {
       into.push(newZone(freeName(choice.replace(/_(left|right)$/, ""), taken), choice));
     }
   });
+  coverWithModel(choice);
   if (choice === "painted")
     tool.value = { kind: "paint", film, zone: plan.value.simulation!.films[film].zones.length - 1, erase: false };
+}
+
+/** A model that goes around its zones goes around a new one as well; it is built again then. */
+function coverWithModel(choice: string): void {
+  const around = region.value?.around;
+  if (!/_(left|right)$/.test(choice) || !around || around.regions.includes(choice)) return;
+  editPlan(({ model }) => {
+    if (model?.geometry.case === "scanRegion") model.geometry.value.around!.regions.push(choice);
+  });
 }
 
 /** With what names it elsewhere. */
@@ -55,11 +66,16 @@ function ZoneRow({ film, index, zone, number }: { film: number; index: number; z
   const at = `simulation.films[${film}].zones[${index}]`;
   const painting =
     tool.value.kind === "paint" && tool.value.film === film && tool.value.zone === index ? tool.value : undefined;
+  const placed = placedZones.value.find(({ number: of, name }) => of === number + 1 && name === zone.name);
   return (
     <li class="item">
       <i class="swatch" style={{ background: cssOf(zoneColours[number % zoneColours.length]) }} aria-hidden="true" />
       <span class="grow">
-        <b>{readable(zone.name)}</b> <span class="quiet">{shapeWord[zone.shape.case ?? ""] ?? "not placed"}</span>
+        <b>{readable(zone.name)}</b>{" "}
+        <span class="quiet">
+          {shapeWord[zone.shape.case ?? ""] ?? "not placed"}
+          {placed && `, ${placed.areaCm2.toFixed(1)} cm²`}
+        </span>
       </span>
       {zone.shape.case === "painted" && (
         <>

@@ -9,10 +9,10 @@ import { collectMeshes } from "../api/meshes";
 import { newId, patients } from "../api/client";
 import { toProblem } from "../api/errors";
 import { uploadScan } from "../api/upload";
+import { takeRegionFromZones } from "./anatomy";
 import { parseLandmarks } from "./landmarks";
 import { parsePlan } from "./plan_file";
 import {
-  attempt,
   editPlan,
   modelIsCurrent,
   model,
@@ -25,6 +25,7 @@ import {
   setModel,
   violations,
 } from "./state";
+import { attempt } from "../activity";
 import { toPlanFields } from "./violations";
 
 /** The patient of this page; made up when there is none yet. */
@@ -90,6 +91,7 @@ export function takePlan(next: Plan): void {
       if (Object.keys(into.landmarksMm).length === 0 && before)
         Object.assign(into, { landmarksMm: before.landmarksMm, axes: before.axes });
     }
+    takeRegionFromZones(next);
     plan.value = next;
     violations.value = [];
     setModel(undefined, undefined);

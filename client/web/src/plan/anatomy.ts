@@ -1,6 +1,8 @@
 // Names that the daemon knows, and regions of skin that are cut as a whole.
 import { create } from "@bufbuild/protobuf";
 import { SkinPointSchema, type SkinPoint } from "@wire/geometry_pb";
+import { AroundSchema, type Around } from "@wire/model_pb";
+import type { Plan } from "@wire/plan_pb";
 
 export type Side = "left" | "right";
 
@@ -30,7 +32,25 @@ export const landmarkHints: Record<string, string> = {
   tragion: "notch above the tragus",
 };
 
-export const zoneNames = ["masseter", "mandibular_angle", "buccal", "malar", "temple", "nasolabial", "chin"];
+export const zoneNames = [
+  "masseter",
+  "mandibular_angle",
+  "buccal",
+  "malar",
+  "zygomatic",
+  "soof",
+  "tear_trough",
+  "midface",
+  "nasolabial",
+  "upper_lip",
+  "lower_lip",
+  "marionette",
+  "chin",
+  "jawline",
+  "submaxillary",
+  "temple",
+  "forehead",
+];
 export const ligamentNames = [
   "zygomatic",
   "masseteric_cutaneous",
@@ -68,19 +88,39 @@ const regions: Record<string, { label: string; corners: Corner[] }> = {
   },
 };
 
-export const regionLabels = Object.entries(regions).map(([key, { label }]) => ({ key, label }));
+/** Parts of the face that a model can be built around: named regions, without their side. */
+const parts: Record<string, { label: string; zones: string[] }> = {
+  jaw_zones: { label: "Masseter and angle of the jaw", zones: ["masseter", "mandibular_angle"] },
+  cheek_zones: { label: "Cheek", zones: ["buccal", "malar"] },
+  midface_zones: { label: "Midface and tear trough", zones: ["midface", "tear_trough"] },
+  ...Object.fromEntries(zoneNames.map((name) => [name, { label: readable(name), zones: [name] }])),
+};
+
+export const regionLabels = [
+  ...Object.entries(parts).map(([key, { label }]) => ({ key, label })),
+  ...Object.entries(regions).map(([key, { label }]) => ({ key, label: `${label}, by four corners` })),
+];
+
+/** Whether a part of the face is cut between four corners, and not around its zones. */
+export const isCornered = (key: string): boolean => key in regions;
+
+/** What the model of a part of the face goes around. */
+export function aroundOf(key: string, side: Side): Around {
+  return create(AroundSchema, { regions: parts[key].zones.map((name) => `${name}_${side}`) });
+}
 
 const midline = new Set(["nasion", "pronasale", "subnasale", "pogonion", "menton"]);
 const sided = (name: string, side: Side): string => (midline.has(name) ? name : `${name}_${side}`);
 
 /** Landmarks without which a region cannot be placed. */
 export function landmarksOf(region: string, side: Side): string[] {
+  if (!isCornered(region)) return [];
   return [
     ...new Set(regions[region].corners.flatMap(({ weights }) => Object.keys(weights).map((name) => sided(name, side)))),
   ];
 }
 
-/** The corners of a region on either side; the mirrored ones in the order that keeps them anticlockwise. */
+/** The corners of a region on either side; the mirrored ones in the order that leaves them anticlockwise. */
 export function cornersOf(region: string, side: Side): SkinPoint[] {
   const corners = regions[region].corners.map((corner) =>
     create(SkinPointSchema, {
@@ -98,6 +138,17 @@ export function cornersOf(region: string, side: Side): SkinPoint[] {
     }),
   );
   return side === "left" ? corners : [corners[1], corners[0], corners[3], corners[2]];
+}
+
+/** Lets the region follow from the zones of a plan that gives it neither corners nor what it goes around. */
+export function takeRegionFromZones({ model, simulation }: Plan): void {
+  if (model?.geometry.case !== "scanRegion") return;
+  const into = model.geometry.value;
+  if (into.corners.length > 0 || into.around) return;
+  const names = (simulation?.films ?? []).flatMap(({ zones }) =>
+    zones.flatMap(({ shape }) => (shape.case === "region" ? [shape.value] : [])),
+  );
+  if (names.length > 0) into.around = create(AroundSchema, { regions: [...new Set(names)] });
 }
 
 /** "mandibular_angle_left" for people. */

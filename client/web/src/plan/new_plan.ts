@@ -1,9 +1,9 @@
-// A plan to begin with: the paper's own face, two layers, nothing injected yet.
+// A plan to begin with: around the zones of the paper, three layers, nothing injected yet.
 import { create } from "@bufbuild/protobuf";
 import { PlanSchema, type Plan } from "@wire/plan_pb";
 import { FilmSchema, InjectionSchema, ZoneSchema, type Film, type Injection, type Zone } from "@wire/simulation_pb";
 import { Support_Kind, TissueLayer_Kind, TissuePreset } from "@wire/model_pb";
-import { cornersOf } from "./anatomy";
+import { aroundOf } from "./anatomy";
 
 export const resolutions = [
   { key: "coarse", label: "Coarse, quickest", nXi: 24, nEta: 20 },
@@ -17,7 +17,7 @@ export function newPlan(): Plan {
   return create(PlanSchema, {
     name: "plan",
     model: {
-      geometry: { case: "scanRegion", value: { corners: cornersOf("jaw", "left") } },
+      geometry: { case: "scanRegion", value: { around: aroundOf("jaw_zones", "left") } },
       nXi: 40,
       nEta: 32,
       tissuePreset: TissuePreset.PAPER,

@@ -4,8 +4,7 @@ import { batch, computed, signal } from "@preact/signals";
 import type { Scan } from "@wire/patient_service_pb";
 import { ModelSpecSchema, type Model } from "@wire/model_pb";
 import { PlanSchema, ScanUnit, type Plan } from "@wire/plan_pb";
-import { token } from "../api/client";
-import { toProblem, type Problem, type Violation } from "../api/errors";
+import type { Violation } from "../api/errors";
 import type { Mesh } from "../api/meshes";
 import { Chart } from "./chart";
 import { newPlan } from "./new_plan";
@@ -21,10 +20,8 @@ export const modelMeshes = signal<Map<string, Mesh> | undefined>(undefined);
 /** of the specification that `model` was built from */
 const builtFrom = signal("");
 
+/** what the daemon has against the plan */
 export const violations = signal<Violation[]>([]);
-export const problem = signal<Problem | undefined>(undefined);
-export const notice = signal("");
-export const busy = signal<{ label: string; share: number | undefined } | undefined>(undefined);
 
 export const chart = computed(() => {
   const skin = modelMeshes.value?.get("skin");
@@ -56,29 +53,4 @@ export function setModel(built: Model | undefined, meshes: Map<string, Mesh> | u
     model.value = built;
     builtFrom.value = built === undefined ? "" : specText.value;
   });
-}
-
-/** Runs something that may take long or fail; says so on the page. Whether it went well. */
-export async function attempt(
-  label: string,
-  work: (progress: (share: number, label?: string) => void) => Promise<void>,
-): Promise<boolean> {
-  busy.value = { label, share: undefined };
-  problem.value = undefined;
-  try {
-    await work((share, now) => (busy.value = { label: now ?? label, share }));
-    return true;
-  } catch (error) {
-    tell(error);
-    return false;
-  } finally {
-    busy.value = undefined;
-  }
-}
-
-/** @param part  of the plan that the daemon was asked about: its violations go beside the fields */
-export function tell(error: unknown): void {
-  problem.value = toProblem(error);
-  if (problem.value.unknownCaller)
-    notice.value = token.value ? "The token is not accepted." : "The daemon asks who you are: give a token.";
 }

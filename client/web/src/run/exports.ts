@@ -1,5 +1,5 @@
 // What a person takes home: plan, figures, picture, surface.
-import { Simulation_State, type SeriesRow, type Simulation } from "@wire/simulation_pb";
+import { Simulation_State, type Simulation } from "@wire/simulation_pb";
 
 export function save(fileName: string, content: string | Blob): void {
   const url = URL.createObjectURL(typeof content === "string" ? new Blob([content], { type: "text/plain" }) : content);
@@ -7,25 +7,6 @@ export function save(fileName: string, content: string | Blob): void {
   Object.assign(link, { href: url, download: fileName });
   link.click();
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
-}
-
-/** Columns as `series.csv` of `lipofill run` names them. */
-export function seriesCsv(rows: SeriesRow[]): string {
-  const columns: [string, (row: SeriesRow) => number | bigint][] = [
-    ["step", (row) => row.step],
-    ["time_s", (row) => row.timeS],
-    ["step_ms", (row) => row.stepMs],
-    ["injected_ml", (row) => row.injectedMl],
-    ["film_volume_ml", (row) => row.filmVolumeMl],
-    ["gap_volume_ml", (row) => row.gapVolumeMl],
-    ["max_pressure_pa", (row) => row.maxPressurePa],
-    ["min_pressure_pa", (row) => row.minPressurePa],
-    ["max_thickness_mm", (row) => row.maxThicknessMm],
-    ["skin_max_displacement_mm", (row) => row.skinMaxDisplacementMm],
-    ["skin_speed_mm_per_s", (row) => row.skinSpeedMmPerS],
-  ];
-  const lines = rows.map((row) => columns.map(([, read]) => String(read(row))).join(","));
-  return `${[columns.map(([name]) => name).join(","), ...lines].join("\n")}\n`;
 }
 
 /** The surface as it is now, in millimetres, in the frame of the scan. */

@@ -1,15 +1,15 @@
 // The frames of a run, to scrub through: bounded in bytes, over the whole of its time.
 //
-// When it is full every second frame goes and from then on only every second that comes is kept, and so on: a long run is
-// kept coarser, never cut. The newest frame is always there.
+// When it is full every second frame goes and from then on only every second that comes stays, and so on: a long run is
+// held coarser, never cut. The newest frame is always there.
 import type { Frame } from "../api/watch";
 
 export class FrameStore {
-  private kept: Frame[] = [];
+  private held: Frame[] = [];
   private newest: Frame | undefined;
   private bytes = 0;
   private stride = 1;
-  /** frames that came, kept or not */
+  /** frames that came, held or not */
   arrived = 0;
 
   constructor(private readonly mostBytes = 96 << 20) {}
@@ -17,27 +17,27 @@ export class FrameStore {
   add(frame: Frame): void {
     this.newest = frame;
     if (this.arrived++ % this.stride === 0) {
-      this.kept.push(frame);
+      this.held.push(frame);
       this.bytes += sizeOf(frame);
     }
-    while (this.bytes > this.mostBytes && this.kept.length > 2) this.thin();
+    while (this.bytes > this.mostBytes && this.held.length > 2) this.thin();
   }
 
   /** Frames of another epoch show steps that the daemon takes again. */
   dropAfter(sequence: bigint): void {
-    this.kept = this.kept.filter((frame) => frame.sequence <= sequence);
-    this.bytes = this.kept.reduce((sum, frame) => sum + sizeOf(frame), 0);
-    this.newest = this.kept.at(-1);
+    this.held = this.held.filter((frame) => frame.sequence <= sequence);
+    this.bytes = this.held.reduce((sum, frame) => sum + sizeOf(frame), 0);
+    this.newest = this.held.at(-1);
   }
 
   clear(): void {
-    Object.assign(this, { kept: [], newest: undefined, bytes: 0, stride: 1, arrived: 0 });
+    Object.assign(this, { held: [], newest: undefined, bytes: 0, stride: 1, arrived: 0 });
   }
 
   private thin(): void {
-    this.kept = this.kept.filter((_, index) => index % 2 === 0);
+    this.held = this.held.filter((_, index) => index % 2 === 0);
     this.stride *= 2;
-    this.bytes = this.kept.reduce((sum, frame) => sum + sizeOf(frame), 0);
+    this.bytes = this.held.reduce((sum, frame) => sum + sizeOf(frame), 0);
   }
 
   get sizeBytes(): number {
@@ -45,8 +45,8 @@ export class FrameStore {
   }
   /** In the order they came, the newest last. */
   get frames(): Frame[] {
-    const last = this.kept.at(-1);
-    return this.newest === undefined || last === this.newest ? this.kept : [...this.kept, this.newest];
+    const last = this.held.at(-1);
+    return this.newest === undefined || last === this.newest ? this.held : [...this.held, this.newest];
   }
   get latest(): Frame | undefined {
     return this.newest;

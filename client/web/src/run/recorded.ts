@@ -1,14 +1,16 @@
 // A folder that `lipofill run` has written, opened in the page: meshes over time, series and summary.
 import type vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
 import vtkXMLPolyDataReader from "@kitware/vtk.js/IO/XML/XMLPolyDataReader";
-import { create, fromJson, type JsonValue } from "@bufbuild/protobuf";
+import { fromJson, type JsonValue } from "@bufbuild/protobuf";
 import { batch } from "@preact/signals";
 import { ArrayType } from "@wire/frame_service_pb";
-import { SeriesRowSchema, SimulationSchema, type SeriesRow } from "@wire/simulation_pb";
+import { SimulationSchema, type Simulation } from "@wire/simulation_pb";
 import type { WireArray } from "../api/arrays";
 import type { Mesh } from "../api/meshes";
 import type { Frame } from "../api/watch";
-import { close, faceMesh, lookAt, meshes, recorded, rows, runAxes, simulation, store } from "./run";
+import { close, lookAt } from "./run";
+import { parseSeries } from "./series_csv";
+import { faceMesh, meshes, recorded, rows, runAxes, simulation, store } from "./state";
 import type { Point } from "../scene/surface_geometry";
 
 interface Surface {
@@ -55,30 +57,6 @@ async function readSurface(file: File, name: string): Promise<Surface> {
   return { mesh, fields };
 }
 
-const columns: [keyof SeriesRow, string][] = [
-  ["timeS", "time_s"],
-  ["stepMs", "step_ms"],
-  ["injectedMl", "injected_ml"],
-  ["filmVolumeMl", "film_volume_ml"],
-  ["maxPressurePa", "max_pressure_pa"],
-  ["minPressurePa", "min_pressure_pa"],
-  ["maxThicknessMm", "max_thickness_mm"],
-  ["skinMaxDisplacementMm", "skin_max_displacement_mm"],
-  ["skinSpeedMmPerS", "skin_speed_mm_per_s"],
-];
-
-export function parseSeries(text: string): SeriesRow[] {
-  const [head, ...lines] = text.trim().split(/\r?\n/);
-  const names = head.split(",");
-  return lines.map((line) => {
-    const cells = line.split(",");
-    const at = (column: string): number => Number(cells[names.indexOf(column)] ?? 0);
-    const row = create(SeriesRowSchema, { step: BigInt(Math.round(at("step"))) });
-    for (const [field, column] of columns) if (names.includes(column)) Object.assign(row, { [field]: at(column) });
-    return row;
-  });
-}
-
 /** Times of the frames by their file, from the collection beside them. */
 function timesOf(pvd: string): Map<string, number> {
   const sets = new DOMParser().parseFromString(pvd, "text/xml").getElementsByTagName("DataSet");
@@ -86,7 +64,7 @@ function timesOf(pvd: string): Map<string, number> {
 }
 
 /** The state and its figures as `summary.json` has them; fields the schema does not know are left out. */
-function parseSummary(text: string): ReturnType<typeof create<typeof SimulationSchema>> {
+function parseSummary(text: string): Simulation {
   const document = JSON.parse(text) as Record<string, JsonValue>;
   const known = {
     name: "simulations/recorded",

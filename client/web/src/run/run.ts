@@ -1,47 +1,34 @@
-// The simulation on the page: created from the plan, steered, watched; or one that is over.
-import { batch, computed, signal } from "@preact/signals";
+// What is done with the simulation on the page: created from the plan, steered, watched; or one that is over, opened.
+import { batch } from "@preact/signals";
 import { Code, ConnectError } from "@connectrpc/connect";
 import { Simulation_State, type Injection, type SeriesRow, type Simulation } from "@wire/simulation_pb";
+import { attempt, tell } from "../activity";
 import { newId, patients, simulations } from "../api/client";
 import { toProblem } from "../api/errors";
-import type { Mesh } from "../api/meshes";
-import { watch, type Frame, type Listener } from "../api/watch";
+import { watch, type Listener } from "../api/watch";
 import { simulationSpec } from "../plan/actions";
-import { attempt, modelIsCurrent, plan, tell, violations } from "../plan/state";
+import { modelIsCurrent, plan, violations } from "../plan/state";
 import { toPlanFields } from "../plan/violations";
 import { axesOf } from "../plan/landmarks";
-import type { Axes } from "../scene/views";
-import { FrameStore } from "./frame_store";
-
-export const simulation = signal<Simulation | undefined>(undefined);
-export const connection = signal<"idle" | "live" | "lost">("idle");
-export const rows = signal<SeriesRow[]>([]);
-export const meshes = signal<Map<string, Mesh> | undefined>(undefined);
-export const frame = signal<Frame | undefined>(undefined);
-/** simulated time that is looked at; undefined: the newest */
-export const lookedAt = signal<number | undefined>(undefined);
-/** of the frame that is shown, for figures: no faster than they can be read */
-export const timeShown = signal<number | undefined>(undefined);
-export const skipped = signal(0);
-export const store = new FrameStore();
-/** "scan" or, without one, "skin" */
-export const faceMesh = signal("scan");
-/** the head's axes of a run that is opened, where its model or its folder has them */
-export const runAxes = signal<Axes | undefined>(undefined);
-/** a folder of results on this machine */
-export const recorded = signal("");
-
-export const state = computed(() => simulation.value?.state ?? Simulation_State.STATE_UNSPECIFIED);
-const underWay = [Simulation_State.READY, Simulation_State.QUEUED, Simulation_State.RUNNING, Simulation_State.PAUSED];
-export const isUnderWay = computed(() => underWay.includes(state.value));
-/** It takes the commands of one that runs. */
-export const isRunning = computed(
-  () => state.value === Simulation_State.RUNNING || state.value === Simulation_State.QUEUED,
-);
-export const hasFrame = computed(() => frame.value !== undefined);
-export const hasResult = computed(
-  () => hasFrame.value && (recorded.value !== "" || (simulation.value?.summary?.steps ?? 0n) > 0n),
-);
+import {
+  connection,
+  distance,
+  faceMesh,
+  frame,
+  isRunning,
+  isUnderWay,
+  lookedAt,
+  meshes,
+  recorded,
+  refusals,
+  rows,
+  runAxes,
+  simulation,
+  skipped,
+  state,
+  store,
+  timeShown,
+} from "./state";
 
 let leave = new AbortController();
 const pollMs = 400;
@@ -89,8 +76,8 @@ export function close(): void {
       undefined,
       "",
     ];
-    [timeShown.value, runAxes.value] = [undefined, undefined];
-    [rows.value, skipped.value, connection.value] = [[], 0, "idle"];
+    [timeShown.value, runAxes.value, distance.value] = [undefined, undefined, undefined];
+    [rows.value, refusals.value, skipped.value, connection.value] = [[], [], 0, "idle"];
   });
 }
 
@@ -120,7 +107,7 @@ async function poll(name: string, left: AbortSignal): Promise<void> {
         const afterStep = rows.value.at(-1)?.step ?? 0n;
         const response = await simulations.getSeries({ name, afterStep }, { signal: left });
         more = response.more;
-        if (!left.aborted && response.rows.length > 0) rows.value = keepRows([...rows.value, ...response.rows]);
+        if (!left.aborted && response.rows.length > 0) rows.value = thinRows([...rows.value, ...response.rows]);
       }
       if (left.aborted) return;
       simulation.value = now;
@@ -135,7 +122,7 @@ async function poll(name: string, left: AbortSignal): Promise<void> {
 }
 
 /** In the order of time, coarser where there are too many; a return to an earlier state takes later rows away. */
-function keepRows(all: SeriesRow[]): SeriesRow[] {
+function thinRows(all: SeriesRow[]): SeriesRow[] {
   return all.length <= mostRows ? all : all.filter((_, index) => index % 2 === 0 || index === all.length - 1);
 }
 
@@ -195,12 +182,12 @@ export async function command(which: Command): Promise<void> {
 }
 
 export async function inject(injection: Injection): Promise<boolean> {
-  violations.value = [];
+  refusals.value = [];
   try {
     simulation.value = await simulations.inject({ name: simulation.value!.name, injection, requestId: newId() });
     return true;
   } catch (error) {
-    violations.value = toProblem(error).violations;
+    refusals.value = toProblem(error).violations;
     tell(error);
     return false;
   }

@@ -15,24 +15,24 @@ export interface FaceNumbers {
 
 /** Reads a frame into arrays that are used again for the next one. */
 export class FrameReader {
-  private kept: Partial<FaceNumbers> = {};
+  private buffers: Partial<FaceNumbers> = {};
 
   read(frame: Frame, mesh: string, count: number): FaceNumbers {
     const get = (field: "displacement" | "pressure" | "thickness", components: number): Float32Array => {
       const array = frame.fields.get(`${mesh}.${field}`);
-      const values = array === undefined ? new Float32Array(count * components) : toNumbers(array, this.kept[field]);
+      const values = array === undefined ? new Float32Array(count * components) : toNumbers(array, this.buffers[field]);
       if (values.length !== count * components)
         throw new Error(`${mesh}.${field} has ${values.length} values for ${count} vertices`);
-      return (this.kept[field] = values);
+      return (this.buffers[field] = values);
     };
     const displacement = get("displacement", 3);
     const [pressure, thickness] = [get("pressure", 1), get("thickness", 1)];
-    const moved = this.kept.moved?.length === count ? this.kept.moved : new Float32Array(count);
+    const moved = this.buffers.moved?.length === count ? this.buffers.moved : new Float32Array(count);
     for (let k = 0; k < count; ++k) {
       moved[k] = Math.hypot(displacement[3 * k], displacement[3 * k + 1], displacement[3 * k + 2]);
       pressure[k] *= quantities.pressure.factor;
     }
-    this.kept.moved = moved;
+    this.buffers.moved = moved;
     return { displacement, moved, pressure, thickness };
   }
 }
@@ -87,8 +87,7 @@ export function colourFace(
 }
 
 /**
- * A map that only grows while a run goes on, so that a colour keeps its meaning from frame to
- * frame.
+ * A map that only grows while a run goes on, so that a colour means the same from frame to frame.
  */
 export class RunningMap {
   private largest = 0;

@@ -3,7 +3,7 @@ import { effect } from "@preact/signals";
 import { countPictures } from "./picture_rate";
 import { useEffect, useRef } from "preact/hooks";
 import { brushMm, tool, toolHint } from "../plan/tools";
-import { hasFrame, meshes } from "../run/run";
+import { hasFrame, meshes } from "../run/state";
 import { FaceScene } from "../scene/face_scene";
 import { bindFace, bindFrame, bindMarkers, bindPatch } from "./stage_bindings";
 import { useCursor } from "./stage_cursor";

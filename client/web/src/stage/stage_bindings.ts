@@ -1,17 +1,17 @@
 // Keeps the scene as the plan and the run have it.
 import { effect, untracked } from "@preact/signals";
+import { placedZones, zoneUnderSkin } from "../plan/check";
 import { locate, pointOf } from "../plan/landmarks";
 import { chart, model, modelMeshes, plan, region, scanMesh, zones } from "../plan/state";
 import { liveSite, tool } from "../plan/tools";
-import { faceMesh, frame, meshes, simulation } from "../run/run";
+import { distance, faceMesh, frame, meshes, simulation } from "../run/state";
 import { zoneColours, type Rgb } from "../scene/colour_maps";
 import type { FaceScene } from "../scene/face_scene";
 import type { Ball, Line } from "../scene/markers";
 import { distanceOf, type Point } from "../scene/surface_geometry";
 import { layerShown, showLayers } from "../panels/tissue_panel";
-import { distance, quantity, step } from "./stage_state";
+import { quantity, step } from "./stage_state";
 import { lookAtFace, lookAtLift, lookAtRegion } from "./view_tools";
-import { zonePreview } from "./zone_preview";
 
 type End = () => void;
 
@@ -38,8 +38,8 @@ function paintedZone(vertex: number): Rgb | undefined {
 
 /** A painted zone as it is in the plan, at once; others as the daemon has placed them. */
 function zoneColour(vertex: number): Rgb | undefined {
-  const placed = zonePreview.value?.[vertex] ?? 0;
-  return paintedZone(vertex) ?? (placed >= 1 ? zoneColours[(Math.round(placed) - 1) % zoneColours.length] : undefined);
+  const placed = zoneUnderSkin.value[vertex] ?? 0;
+  return paintedZone(vertex) ?? (placed >= 1 ? zoneColours[(placed - 1) % zoneColours.length] : undefined);
 }
 
 export function bindPatch(scene: FaceScene): End {
@@ -54,7 +54,7 @@ export function bindPatch(scene: FaceScene): End {
     });
   });
   const colours = effect(() => {
-    void [zonePreview.value, zones.value];
+    void [zoneUnderSkin.value, zones.value];
     scene.colourPatch(zoneColour);
   });
   const layers = effect(() => {
@@ -118,6 +118,11 @@ export function bindMarkers(scene: FaceScene): End {
       for (const { site } of injections) if (site) add(place(site), "site");
       if (liveSite.value) add(place(liveSite.value), "active");
       if (step.value === "fat") {
+        for (const { number, outline } of placedZones.value)
+          for (const { pointsMm } of outline) {
+            const around = pointsMm.map(pointOf);
+            lines.push({ points: [...around, around[0]], colour: zoneColours[(number - 1) % zoneColours.length] });
+          }
         for (const ligament of ligaments)
           if (ligament.place.case === "points")
             ligament.place.value.points.forEach((at) => add(place(at), "ligament", 1.2));
@@ -133,7 +138,7 @@ export function bindMarkers(scene: FaceScene): End {
   });
 }
 
-/** A frame is worked on once a refresh of the screen, the newest: what came between is only kept. */
+/** A frame is worked on once a refresh of the screen, the newest: what came between is only stored. */
 export function bindFrame(scene: FaceScene): End {
   let due = 0;
   let lookedAt: unknown;

@@ -2,7 +2,7 @@
 import type { RefObject } from "preact";
 import { useEffect } from "preact/hooks";
 import { click, dab, tool } from "../plan/tools";
-import { frame } from "../run/run";
+import { frame } from "../run/state";
 import { probe, shownScene } from "./stage_state";
 
 /** A press that moved further was a turn of the face. */

@@ -1,6 +1,5 @@
 // What the picture shows, and how.
 import { signal } from "@preact/signals";
-import type { Evaluation } from "@wire/simulation_service_pb";
 import type { ColourMap, Quantity } from "../scene/colour_maps";
 import type { FaceScene, Probe } from "../scene/face_scene";
 
@@ -14,7 +13,6 @@ export const compare = signal<Compare>("after");
 export const split = signal(0.5);
 export const map = signal<ColourMap | undefined>(undefined);
 export const probe = signal<(Probe & { x: number; y: number }) | undefined>(undefined);
-export const distance = signal<Evaluation | undefined>(undefined);
 export const shownScene = signal<FaceScene | undefined>(undefined);
 /** pictures of different frames, in the last second and in all */
 export const rate = signal(0);

@@ -1,5 +1,6 @@
 // Back and forth through the frames that came.
-import { connection, frame, hasResult, lookAt, lookedAt, rows, skipped, store, timeShown } from "../run/run";
+import { lookAt } from "../run/run";
+import { connection, frame, hasResult, lookedAt, rows, skipped, store, timeShown } from "../run/state";
 import { rate } from "./stage_state";
 
 export function Timeline() {

@@ -1,9 +1,9 @@
 // Buttons on the picture: where to look from, what is coloured, before and after.
 import { axesOf } from "../plan/landmarks";
 import { chart, modelMeshes, plan, region } from "../plan/state";
-import { hasFrame, hasResult, runAxes } from "../run/run";
+import { distance, hasFrame, hasResult, runAxes } from "../run/state";
 import { faceView, regionView, type View } from "../scene/views";
-import { compare, distance, quantity, shownScene, step, type Compare } from "./stage_state";
+import { compare, quantity, shownScene, step, type Compare } from "./stage_state";
 import { Segmented } from "../widgets/fields";
 import type { Quantity } from "../scene/colour_maps";
 

@@ -3,9 +3,13 @@ import type { ComponentChildren } from "preact";
 import { useId, useState } from "preact/hooks";
 import { violations } from "../plan/state";
 import { descriptionFor } from "../plan/violations";
+import { refusals } from "../run/state";
+
+const complaintOf = (field: string | undefined): string =>
+  field === undefined ? "" : descriptionFor(field, [...violations.value, ...refusals.value]);
 
 export function Complaint({ field, id }: { field?: string; id?: string }) {
-  const text = field === undefined ? "" : descriptionFor(field, violations.value);
+  const text = complaintOf(field);
   return text === "" ? null : (
     <p class="complaint" id={id} role="alert">
       {text}
@@ -30,7 +34,7 @@ export function NumberField({ label, unit, value, field, step, min, max, placeho
   const id = useId();
   // What is being typed stays while the page around it is drawn again.
   const [typed, setTyped] = useState<string | undefined>(undefined);
-  const wrong = field !== undefined && descriptionFor(field, violations.value) !== "";
+  const wrong = complaintOf(field) !== "";
   return (
     <div class="field">
       <label for={id}>{label}</label>

@@ -11,12 +11,15 @@ import { bin, picture, root, System } from "../system/system";
 
 const system = new System();
 const errors: string[] = [];
+/** what the page has asked the daemon for, by method */
+const calls: string[] = [];
 let page: Page;
 let reader: PictureReader;
 
 beforeAll(async () => {
   await system.start();
   page = await system.newPage(errors);
+  page.on("request", (request) => calls.push(new URL(request.url()).pathname.split("/").at(-1)!));
   reader = await PictureReader.open(page);
   await page.goto(system.address);
 });
@@ -159,6 +162,26 @@ describe("a plan", () => {
     await button("Move the point").waitFor();
     await page.waitForTimeout(1200);
     expect(await page.locator(".complaint").allTextContents()).toEqual([]);
+  });
+
+  it("has the areas of its zones, and what is worth knowing of it", async () => {
+    await expect.poll(() => page.getByText(/, [\d.]+ cm²/).count(), soon).toBe(3);
+    const end = page.getByLabel("Ends at the latest after");
+    const before = await end.inputValue();
+    await end.fill("0.1");
+    await end.press("Tab");
+    await page.getByText(/what is left of them will not be injected/).waitFor();
+    await end.fill(before);
+    await end.press("Tab");
+    await page.getByText(/what is left of them/).waitFor({ state: "detached" });
+  });
+
+  it("is only asked about: no simulation is made before one is run", () => {
+    const server = `127.0.0.1:${system.daemonPort}`;
+    const listed = execFileSync(join(bin, "lipofill"), ["simulation", "list", "--json", "--server", server]);
+    expect(JSON.parse(String(listed)).simulations).toEqual([]);
+    expect(calls).toContain("CheckPlan");
+    expect(calls).not.toContain("CreateSimulation");
   });
 });
 

@@ -1,7 +1,7 @@
 import { readFileSync, readdirSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { ScanUnit } from "@wire/plan_pb";
-import { cornersOf } from "../../src/plan/anatomy";
+import { aroundOf, cornersOf, takeRegionFromZones } from "../../src/plan/anatomy";
 import { Chart } from "../../src/plan/chart";
 import { locate, parseLandmarks, pointOf, writeLandmarks } from "../../src/plan/landmarks";
 import { freeName, newPlan, setResolution } from "../../src/plan/new_plan";
@@ -54,6 +54,18 @@ describe("landmarks", () => {
     expect(at[0]).toBeCloseTo(gonion[0] - 2);
     expect(at[1]).toBeCloseTo(gonion[1] - 17);
     expect(at[2]).toBeCloseTo(gonion[2] - 12);
+  });
+  it("place the region of a plan without corners around its zones, each once", () => {
+    const plan = parsePlan(
+      JSON.stringify({
+        model: { scan_region: {} },
+        simulation: { films: [{ zones: [{ region: "chin_left" }, { region: "malar_left" }, { region: "chin_left" }] }] },
+      }),
+    );
+    takeRegionFromZones(plan);
+    const geometry = plan.model!.geometry;
+    expect(geometry.case === "scanRegion" && geometry.value.around?.regions).toEqual(["chin_left", "malar_left"]);
+    expect(aroundOf("jaw_zones", "right").regions).toEqual(["masseter_right", "mandibular_angle_right"]);
   });
   it("give no place while one is missing", () => {
     expect(locate(cornersOf("jaw", "right")[0], {}, undefined)).toBeUndefined();

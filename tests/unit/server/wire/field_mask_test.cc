@@ -25,7 +25,7 @@ v1::Simulation example() {
 
 TEST(FieldMask, KeepsWhatItNames) {
   v1::Simulation simulation = example();
-  keep_masked(mask_of({"state", "summary.steps"}), simulation);
+  apply_field_mask(mask_of({"state", "summary.steps"}), simulation);
   EXPECT_EQ(simulation.ShortDebugString(), "state: PAUSED summary { steps: 7 }");
 }
 
@@ -33,7 +33,7 @@ TEST(FieldMask, KeepsEverythingWhenItIsEmptyOrAStar) {
   for (const auto& mask : {mask_of({}), mask_of({"*"})}) {
     EXPECT_TRUE(check_field_mask(mask, *v1::Simulation::descriptor(), "read_mask").ok());
     v1::Simulation simulation = example();
-    keep_masked(mask, simulation);
+    apply_field_mask(mask, simulation);
     EXPECT_EQ(simulation.DebugString(), example().DebugString());
     EXPECT_TRUE(is_masked(mask, "state"));
   }

@@ -97,7 +97,7 @@ TEST(FrameEncoding, SendsTheFieldsAskedForInTheTypeAskedFor) {
   EXPECT_EQ(bytes, 300'000u * 3 * 2);
 
   v1::FrameSlice kept = to_whole_frame(*made, {{"film/deep", "skin"}});
-  keep_selection(selection, kept);
+  select_fields(selection, kept);
   EXPECT_EQ(kept.SerializeAsString(), to_whole_frame(*made, selection).SerializeAsString());
 }
 
@@ -128,7 +128,7 @@ TEST(FrameEncoding, HashesMeshesByContent) {
   EXPECT_NE(all->topology_hash, skin->topology_hash);
   v1::MeshSlice kept = to_whole_meshes(topology, {"film/a.b", "skin"});
   EXPECT_THAT(mesh_names(kept), ElementsAre("skin", "film/a.b"));
-  keep_meshes({"skin"}, *kept.mutable_arrays());
+  select_meshes({"skin"}, *kept.mutable_arrays());
   EXPECT_EQ(compute_topology_hash(kept), skin->topology_hash);
   topology.meshes[0].points_mm[4] = 2;
   EXPECT_NE(to_whole_meshes(topology, {"skin"}).topology_hash(), skin->topology_hash);

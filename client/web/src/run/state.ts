@@ -1,0 +1,43 @@
+// The simulation that the page shows, and what has come of it: another one than the plan's where one was opened.
+import { computed, signal } from "@preact/signals";
+import { Simulation_State, type SeriesRow, type Simulation } from "@wire/simulation_pb";
+import type { Evaluation } from "@wire/simulation_service_pb";
+import type { Violation } from "../api/errors";
+import type { Mesh } from "../api/meshes";
+import type { Frame } from "../api/watch";
+import type { Axes } from "../scene/views";
+import { FrameStore } from "./frame_store";
+
+export const simulation = signal<Simulation | undefined>(undefined);
+export const connection = signal<"idle" | "live" | "lost">("idle");
+export const rows = signal<SeriesRow[]>([]);
+export const meshes = signal<Map<string, Mesh> | undefined>(undefined);
+export const frame = signal<Frame | undefined>(undefined);
+/** simulated time that is looked at; undefined: the newest */
+export const lookedAt = signal<number | undefined>(undefined);
+/** of the frame that is shown, for figures: no faster than they can be read */
+export const timeShown = signal<number | undefined>(undefined);
+export const skipped = signal(0);
+export const store = new FrameStore();
+/** "scan" or, without one, "skin" */
+export const faceMesh = signal("scan");
+/** the head's axes of a run that is opened, where its model or its folder has them */
+export const runAxes = signal<Axes | undefined>(undefined);
+/** how near the result is to a target, where it was compared with one */
+export const distance = signal<Evaluation | undefined>(undefined);
+/** what the daemon has against an injection into what runs */
+export const refusals = signal<Violation[]>([]);
+/** a folder of results on this machine */
+export const recorded = signal("");
+
+export const state = computed(() => simulation.value?.state ?? Simulation_State.STATE_UNSPECIFIED);
+const underWay = [Simulation_State.READY, Simulation_State.QUEUED, Simulation_State.RUNNING, Simulation_State.PAUSED];
+export const isUnderWay = computed(() => underWay.includes(state.value));
+/** It takes the commands of one that runs. */
+export const isRunning = computed(
+  () => state.value === Simulation_State.RUNNING || state.value === Simulation_State.QUEUED,
+);
+export const hasFrame = computed(() => frame.value !== undefined);
+export const hasResult = computed(
+  () => hasFrame.value && (recorded.value !== "" || (simulation.value?.summary?.steps ?? 0n) > 0n),
+);

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/field_violations.h"
+#include "core/film/cell_pieces.h"
+#include "core/film/film_grid.h"
+#include "core/geometry/cut_rectangle.h"
+#include "core/model/face_model.h"
+#include "core/plan/simulation_spec.h"
+
+namespace lipofill::plan {
+
+/// What the zones of a film cover of its slots.
+struct PlacedZones {
+  std::vector<int> zone_of_slot;       ///< whose cell a slot is, -1: of no zone
+  std::vector<film::SlotCover> cover;  ///< of each slot by its own zone
+  std::vector<film::SlotFragment> fragments;
+  std::vector<geometry::Level> levels;  ///< of each zone: positive where the fat is its own
+  /// The same as several levels of which all are positive there, without the corners that one of
+  /// their minimum has.
+  std::vector<std::vector<geometry::Level>> cutting;
+  double uncounted = 0.0;  ///< slots' worth of zones that no cell could take
+};
+
+/// Finds the cells of each zone. Where zones overlap the earlier one has the place. With
+/// ZoneOutline::kCurve the outlines cut the slots they cross; a slot of which a zone covers less
+/// than a quarter, or less than another zone, counts as part of the zone's cell beside it. Field
+/// violations are named "zones[index]" and below; remarks say what of a zone lies outside the film.
+/// Checked by
+/// tests/unit/plan/zone_placement_test.cc.
+PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, FieldViolations& violations,
+                        std::vector<std::string>& remarks);
+
+/// Gives each piece of a cell its share inside the outline of the cell's zone and leaves out those
+/// without any.
+std::vector<film::CellPiece> cut_at_outlines(std::vector<film::CellPiece> pieces, const film::FilmGrid& grid,
+                                             const PlacedZones& zones);
+
+/// Middle of a slot of a film's grid, cell or not.
+geometry::ChartPoint slot_centre(const FilmSpec& spec, int slot);
+
+}  // namespace lipofill::plan

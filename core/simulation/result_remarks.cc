@@ -1,0 +1,67 @@
+// What to know before relying on a result.
+
+#include <cmath>
+
+#include "absl/strings/str_format.h"
+#include "core/base/units.h"
+#include "core/simulation/simulation_impl.h"
+#include "core/solid/hex_shape.h"
+
+namespace lipofill::simulation {
+namespace {
+
+constexpr double kPoorScaledJacobian = 0.2;
+constexpr double kHighPressure = 10e3;     // [Pa]
+constexpr double kLargeVolumeLoss = 0.02;  // of the tissue
+constexpr double kPascalsPerMmhg = 133.322;
+
+/// Volume of the hexahedra at positions [m3]: 2 x 2 x 2 Gauss points, exact for trilinear shapes.
+double compute_volume(const solid::HexMesh& mesh, const Eigen::Matrix3Xd& x) {
+  double volume = 0.0;
+  for (int e = 0; e < mesh.n_hexahedra(); ++e) {
+    const solid::HexNodes nodes = mesh.gather(e, x);
+    for (const solid::LocalPoint& point : solid::hex_gauss_points()) {
+      volume += solid::compute_jacobian(nodes, point).determinant();
+    }
+  }
+  return volume;
+}
+
+}  // namespace
+
+/// The remarks on the shape it ended in.
+void Simulation::Impl::remark_on_result(std::vector<std::string>& remarks) const {
+  if (report.max_pressure > kHighPressure) {
+    remarks.push_back(
+        absl::StrFormat("The fat presses with %.1f kPa (%.0f mmHg) at most; above %.0f kPa no tissue "
+                        "holds it where it is put: inject less or into a larger zone.",
+                        report.max_pressure / kPascalsPerKilopascal, report.max_pressure / kPascalsPerMmhg,
+                        kHighPressure / kPascalsPerKilopascal));
+  }
+  if (stepper->tissue() == nullptr) return;
+  if (report.min_scaled_jacobian < kPoorScaledJacobian) {
+    remarks.push_back(
+        absl::StrFormat("The tissue is distorted: the worst hexahedron has a scaled Jacobian of %.2f, "
+                        "below %.1f its figures are not to be relied upon.",
+                        report.min_scaled_jacobian, kPoorScaledJacobian));
+  }
+  const solid::HexMesh& mesh = stepper->tissue()->tissue.mesh();
+  const double before = compute_volume(mesh, mesh.rest_positions);
+  const double change = compute_volume(mesh, state.positions) - before;
+  if (std::abs(change) <= kLargeVolumeLoss * before) return;
+  remarks.push_back(
+      absl::StrFormat("The tissue %s %.1f %% of its volume (%.2f mL), which soft tissue keeps to %.0f %%.",
+                      change < 0.0 ? "lost" : "gained", 100.0 * std::abs(change) / before,
+                      std::abs(change) * kMillilitresPerCubicMetre, 100.0 * kLargeVolumeLoss));
+}
+
+std::vector<std::string> Simulation::remarks() const {
+  std::vector<std::string> remarks = impl_->model->geometry.cautions;
+  for (const plan::FilmLayout& film : impl_->films) {
+    remarks.insert(remarks.end(), film.remarks.begin(), film.remarks.end());
+  }
+  if (impl_->phase != Phase::kRunning) impl_->remark_on_result(remarks);
+  return remarks;
+}
+
+}  // namespace lipofill::simulation

@@ -1,7 +1,8 @@
 # Warnings, floating-point rules and the compiler cache, for all of our own targets.
 
-# Objects of one checkout serve another: the compiler cache sees paths relative to the checkout. Without its leave to be
-# sloppy about these two it would not cache what is compiled with precompiled headers.
+# Objects of one checkout serve another: the compiler cache sees paths relative to the checkout.
+# Without its leave to be sloppy about these two it would not cache what is compiled with
+# precompiled headers.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
   set(launcher
@@ -16,7 +17,8 @@ endif()
 # Checks of invariants stay armed in a release.
 string(REPLACE "-DNDEBUG" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
 
-# The instructions that programs may use. Its vectors reach Eigen's types, so all targets share one setting.
+# The instructions that programs may use. Its vectors reach Eigen's types, so all targets share one
+# setting.
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(LIPOFILL_ARCH_DEFAULT x86-64-v3)
 endif()
@@ -30,7 +32,8 @@ if(LIPOFILL_SANITIZE)
   add_link_options(-fsanitize=${LIPOFILL_SANITIZE})
 endif()
 
-# Contraction to fused multiply-add would make results depend on how the compiler schedules an expression.
+# Contraction to fused multiply-add would make results depend on how the compiler schedules an
+# expression.
 add_library(lipofill_compile INTERFACE)
 target_compile_options(lipofill_compile INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off)

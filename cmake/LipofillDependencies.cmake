@@ -40,9 +40,10 @@ target_compile_definitions(lipofill_httplib INTERFACE
   CPPHTTPLIB_OPENSSL_SUPPORT CPPHTTPLIB_ZLIB_SUPPORT CPPHTTPLIB_BROTLI_SUPPORT)
 target_link_libraries(lipofill_httplib INTERFACE ${HTTPLIB_LIBRARY} OpenSSL::SSL OpenSSL::Crypto Threads::Threads)
 
-# CHOLMOD's Debian package has no CMake file. Its BLAS must be OpenBLAS with POSIX threads, told to use one thread (sessions run
-# in parallel, see core/coupling/coupled_factor.cc): Debian's serial OpenBLAS is built without locks and, called from two
-# threads at once, now and then gives wrong results.
+# CHOLMOD's Debian package has no CMake file. Its BLAS must be OpenBLAS with POSIX threads, told to
+# use one thread (sessions run in parallel, see core/coupling/coupled_factor.cc): Debian's serial
+# OpenBLAS is built without locks and, called from two threads at once, now and then gives wrong
+# results.
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_library(OPENBLAS_LIBRARY openblas PATHS
@@ -51,8 +52,8 @@ find_library(OPENBLAS_LIBRARY openblas PATHS
 add_library(lipofill_cholmod INTERFACE)
 target_include_directories(lipofill_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
 target_link_libraries(lipofill_cholmod INTERFACE ${CHOLMOD_LIBRARY} ${OPENBLAS_LIBRARY} gomp)
-# CHOLMOD asks for libblas and liblapack by name and would take the machine's default. Ours, needed by the program itself, are loaded first
-# and stay in its place.
+# CHOLMOD asks for libblas and liblapack by name and would take the machine's default. Ours, needed
+# by the program itself, are loaded first and stay in its place.
 get_filename_component(OPENBLAS_DIR ${OPENBLAS_LIBRARY} DIRECTORY)
 target_link_libraries(lipofill_cholmod INTERFACE
   ${OPENBLAS_DIR}/liblapack.so.3 ${OPENBLAS_DIR}/libblas.so.3)

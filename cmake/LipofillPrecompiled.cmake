@@ -1,6 +1,6 @@
-# Headers of others that many sources include, read once and kept. A folder says with LIPOFILL_HEADERS which set its
-# targets, and those of the folders below, start from. A source still includes what it uses: the sanitizers' presets build
-# without precompiled headers.
+# Headers of others that many sources include, read once and kept. A folder says with
+# LIPOFILL_HEADERS which set its targets, and those of the folders below, start from. A source still
+# includes what it uses: the sanitizers' presets build without precompiled headers.
 
 #   lipofill_precompiled(SET HEADERS <a> <b> DEPENDS targets with the headers and their definitions)
 function(lipofill_precompiled set)

@@ -32,8 +32,8 @@ int to_milliseconds(double seconds) {
   return static_cast<int>(std::lround(1e3 * seconds));
 }
 
-/// A peer that has frozen or lost its network is found by pings, or, when bytes wait for it, by TCP's own probes; one
-/// that pings us more than every ten seconds is turned away.
+/// A peer that has frozen or lost its network is found by pings, or, when bytes wait for it, by
+/// TCP's own probes; one that pings us more than every ten seconds is turned away.
 void set_channel_arguments(const BackendOptions& options, grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, to_milliseconds(options.keepalive_s));
@@ -90,7 +90,8 @@ GrpcServer::GrpcServer(const ServiceGuard& guard, Backend& backend)
 
 absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<std::string>& addresses,
                                                               const ServiceGuard& guard, Backend& backend) {
-  // Debian builds absl, on whose mutexes gRPC runs, with its search for deadlocks, which takes part in every lock.
+  // Debian builds absl, on whose mutexes gRPC runs, with its search for deadlocks, which takes part
+  // in every lock.
   absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
   grpc::EnableDefaultHealthCheckService(true);
   // The library is named here so that the linker takes it in.

@@ -26,11 +26,14 @@ struct ServiceGuard {
   bool reflection = true;
 };
 
-/// The services on TCP ports and UNIX sockets, with standard health and reflection. Every call passes CallWatchers.
+/// The services on TCP ports and UNIX sockets, with standard health and reflection. Every call
+/// passes CallWatchers.
 class GrpcServer {
  public:
-  /// @param addresses  host:port (port 0 takes a free one) or unix:path. Users of the socket's group may write to it.
-  /// @param guard      who may do what; outlives the server. TCP is served with TLS where it has that.
+  /// @param addresses  host:port (port 0 takes a free one) or unix:path. Users of the socket's
+  ///                   group may write to it.
+  /// @param guard      who may do what; outlives the server. TCP is served with TLS where it has
+  ///                   that.
   /// UNAVAILABLE when one cannot be listened on, also when another program already does.
   static absl::StatusOr<std::unique_ptr<GrpcServer>> start(const std::vector<std::string>& addresses,
                                                            const ServiceGuard& guard, Backend& backend);
@@ -39,11 +42,13 @@ class GrpcServer {
   int port() const { return port_; }
 
   using Seconds = std::chrono::duration<double>;
-  /// Ends the service, in order: health turns NOT_SERVING and nothing new is taken; after `delay` viewers' streams end
-  /// with draining(), simulations stand still with their state kept, for the next start to go on from, builds are
-  /// cancelled, calls under way are answered or, after some seconds of `timeout`, cut off. Returns when all have ended;
-  /// within `timeout` but for work that does not look at the clock (a step, a build). False when gRPC still waits for
-  /// clients that neither read nor leave: all work is done, but the program must end without destroying the server.
+  /// Ends the service, in order: health turns NOT_SERVING and nothing new is taken; after `delay`
+  /// viewers' streams end with draining(), simulations stand still with their state kept, for the
+  /// next start to go on from, builds are cancelled, calls under way are answered or, after some
+  /// seconds of `timeout`, cut off. Returns when all have ended; within `timeout` but for work that
+  /// does not look at the clock (a step, a build). False when gRPC still waits for clients that
+  /// neither read nor leave: all work is done, but the program must end without destroying the
+  /// server.
   /// Checked by tests/integration/service/drain_test.cc.
   bool drain(Seconds delay, Seconds timeout);
 

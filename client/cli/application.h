@@ -51,8 +51,8 @@ CLI::App* add_command(CLI::App& parent, Application& application, const std::str
 CLI::App* add_local_command(CLI::App& parent, Application& application, const std::string& name,
                             const std::string& description, const std::string& examples, Action action);
 
-/// The options that say which daemon a command speaks to, and as whom; add_command() adds them by itself. A command that
-/// connects only sometimes reads the credentials when it does.
+/// The options that say which daemon a command speaks to, and as whom; add_command() adds them by
+/// itself. A command that connects only sometimes reads the credentials when it does.
 void add_connection_options(CLI::App& command, Application& application);
 
 /// A word that only holds further commands.

@@ -55,7 +55,8 @@ absl::StatusOr<ExitCode> evaluate_on(Application& application, const Connection&
   return ExitCode::kOk;
 }
 
-/// A folder knows its simulation: on the daemon that ran it, or in the state a private one left in the folder.
+/// A folder knows its simulation: on the daemon that ran it, or in the state a private one left in
+/// the folder.
 absl::StatusOr<ExitCode> evaluate_folder(Application& application, const Options& options) {
   const std::filesystem::path folder = options.result;
   const std::filesystem::path out = options.out.empty() ? folder : std::filesystem::path(options.out);

@@ -5,8 +5,9 @@
 
 namespace lipofill::client {
 
-/// Turns the first SIGINT or SIGTERM into a stop request; a second one ends the program at once with 130.
-/// Make it before any other thread: the signals are blocked from then on, and threads inherit that.
+/// Turns the first SIGINT or SIGTERM into a stop request; a second one ends the program at once
+/// with 130. Make it before any other thread: the signals are blocked from then on, and threads
+/// inherit that.
 class Interrupt {
  public:
   Interrupt();

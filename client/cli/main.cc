@@ -1,5 +1,5 @@
-// lipofill: the command line of the planner. Each command fills in an action; this file carries it out and turns what
-// came of it into an exit code.
+// lipofill: the command line of the planner. Each command fills in an action; this file carries it
+// out and turns what came of it into an exit code.
 
 #include <exception>
 #include <iostream>
@@ -54,7 +54,8 @@ int n_values(const CLI::App& app, const std::string& option) {
   return known == nullptr ? 0 : known->get_items_expected_min();
 }
 
-/// Refuses a command line with a word for a command that there is not, and names the nearest one there is.
+/// Refuses a command line with a word for a command that there is not, and names the nearest one
+/// there is.
 absl::Status check_commands(const CLI::App& root, int argc, char** argv) {
   const CLI::App* app = &root;
   std::string path;

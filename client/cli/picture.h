@@ -8,9 +8,10 @@ namespace lipofill::client {
 
 enum class Picture { kResult, kDistance };
 
-/// Draws the picture of a folder of results ("picture.png", or "distance.png" from its distance.vtp) in a process of
-/// its own: on the X server that $DISPLAY names, or else under xvfb-run. FAILED_PRECONDITION, saying what to install,
-/// where there is neither. Checked by tests/integration/cli/.
+/// Draws the picture of a folder of results ("picture.png", or "distance.png" from its
+/// distance.vtp) in a process of its own: on the X server that $DISPLAY names, or else under
+/// xvfb-run. FAILED_PRECONDITION, saying what to install, where there is neither. Checked by
+/// tests/integration/cli/.
 absl::Status draw_picture(const std::filesystem::path& folder, Picture picture, const std::filesystem::path& png);
 
 }  // namespace lipofill::client

@@ -11,12 +11,13 @@
 
 namespace lipofill::client {
 
-/// A lipofilld of this program's own, on a free port of the loopback interface; it ends with the object, however this
-/// program ends. Checked by tests/integration/cli/.
+/// A lipofilld of this program's own, on a free port of the loopback interface; it ends with the
+/// object, however this program ends. Checked by tests/integration/cli/.
 class PrivateDaemon {
  public:
-  /// Starts one that keeps its state in `data` and waits until it answers. NOT_FOUND without a lipofilld beside this
-  /// program or on PATH; INTERNAL, with the end of its log, when it does not come up.
+  /// Starts one that keeps its state in `data` and waits until it answers. NOT_FOUND without a
+  /// lipofilld beside this program or on PATH; INTERNAL, with the end of its log, when it does not
+  /// come up.
   static absl::StatusOr<std::unique_ptr<PrivateDaemon>> start(const std::filesystem::path& data,
                                                               const std::stop_token& stop);
   ~PrivateDaemon();

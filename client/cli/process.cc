@@ -24,7 +24,8 @@ bool is_program(const std::filesystem::path& file) {
   return std::filesystem::is_regular_file(file, error) && access(file.c_str(), X_OK) == 0;
 }
 
-/// The variables of this program but for those that set up a daemon of somebody else's or are between it and systemd.
+/// The variables of this program but for those that set up a daemon of somebody else's or are
+/// between it and systemd.
 std::vector<char*> environment_to_hand_on() {
   std::vector<char*> variables;
   for (char** variable = environ; *variable != nullptr; ++variable) {

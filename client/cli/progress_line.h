@@ -5,8 +5,8 @@
 
 namespace lipofill::client {
 
-/// One line on the error output about how far the work is: rewritten in place on a terminal, else a new line every two
-/// seconds. Silent when quiet.
+/// One line on the error output about how far the work is: rewritten in place on a terminal, else a
+/// new line every two seconds. Silent when quiet.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet);

@@ -20,14 +20,15 @@ absl::StatusOr<RunRecord> record_of_simulation(const Connection& connection, con
 absl::Status write_figures(const std::filesystem::path& folder, const std::string& plan,
                            const v1::Simulation& simulation, const std::vector<v1::SeriesRow>& rows);
 
-/// Writes the final state of a simulation that has ended, as a run would have: meshes, series, summary and record.
+/// Writes the final state of a simulation that has ended, as a run would have: meshes, series,
+/// summary and record.
 /// @return what was done, for people
 absl::StatusOr<std::string> export_result(const Connection& connection, const std::string& simulation,
                                           const std::filesystem::path& out);
 
-/// Measures a simulation against a target and writes evaluation.json, distance.vtp and, where it can be drawn,
-/// distance.png. `target` is a surface file, sent to the patient of the simulation's model, or the name of a scan the
-/// daemon has.
+/// Measures a simulation against a target and writes evaluation.json, distance.vtp and, where it
+/// can be drawn, distance.png. `target` is a surface file, sent to the patient of the simulation's
+/// model, or the name of a scan the daemon has.
 /// @param picture_problem  out: why there is no picture; OK when there is one
 absl::StatusOr<v1::Evaluation> evaluate_into(const std::filesystem::path& folder, const Connection& connection,
                                              const v1::Simulation& simulation, const std::string& target,

@@ -27,7 +27,8 @@ using v1::SimulationService;
 
 constexpr char kPrivateData[] = ".lipofilld";
 
-/// The settled shape in as few steps as it takes: the goal's own step lengths and tolerance in place of the plan's.
+/// The settled shape in as few steps as it takes: the goal's own step lengths and tolerance in
+/// place of the plan's.
 void aim_at_settled_shape(v1::TimeControl& time) {
   time.set_goal(v1::TimeControl::SETTLED_SHAPE);
   time.clear_max_step_ms();

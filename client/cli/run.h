@@ -21,10 +21,10 @@ namespace lipofill::client {
 struct RunOptions {
   std::string plan;
   std::string out;
-  std::string patient;    ///< on the daemon; empty: one is made
-  std::string scan;       ///< in place of the plan's
-  std::string bone;       ///< in place of the plan's
-  std::string landmarks;  ///< in place of the plan's
+  std::string patient;    ///< is one on the daemon; where it is empty, one is made
+  std::string scan;       ///< takes the place of the plan's
+  std::string bone;       ///< takes the place of the plan's
+  std::string landmarks;  ///< takes the place of the plan's
   std::optional<v1::ScanUnit> unit;
   std::optional<double> interval_ms;
   bool preview = false;  ///< a coarse model's settled shape first
@@ -37,7 +37,8 @@ struct RunOptions {
   bool quiet = false;
 };
 
-/// A plan carried out on a daemon from scan to result: each member function is one step, in their order in `carry_out`.
+/// A plan carried out on a daemon from scan to result: each member function is one step, in their
+/// order in `carry_out`.
 class Run {
  public:
   Run(Application& application, RunOptions options);

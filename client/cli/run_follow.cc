@@ -49,7 +49,8 @@ absl::Status Run::take_frames(const v1::WatchRequest& request, const std::functi
   return watch(*connection_, request, handlers);
 }
 
-/// Frames are taken and written on a thread of their own, so that the progress goes on while a file is written.
+/// Frames are taken and written on a thread of their own, so that the progress goes on while a file
+/// is written.
 absl::Status Run::simulate() {
   v1::WatchRequest request = watch_request();
   auto meshes = mesh_names(*connection_, simulation_);

@@ -10,7 +10,8 @@
 
 namespace lipofill::client {
 
-/// run.json in a folder of results: where they came from, so that the folder can be evaluated and drawn later.
+/// run.json in a folder of results: where they came from, so that the folder can be evaluated and
+/// drawn later.
 struct RunRecord {
   std::string plan;
   std::string simulation;

@@ -19,8 +19,9 @@ bool has_ended(v1::Simulation::State state);
 absl::Status fetch_series(const Connection& connection, const std::string& simulation,
                           std::vector<v1::SeriesRow>* rows);
 
-/// The names of all meshes a simulation has: "skin", its films, "scan" where its model was cut from one, "tissue" where
-/// it has layers. A simulation outlives its model: without that, only those its own plan tells of.
+/// The names of all meshes a simulation has: "skin", its films, "scan" where its model was cut from
+/// one, "tissue" where it has layers. A simulation outlives its model: without that, only those its
+/// own plan tells of.
 absl::StatusOr<std::vector<std::string>> mesh_names(const Connection& connection, const v1::Simulation& simulation);
 
 struct FinalState {

@@ -9,9 +9,9 @@
 
 namespace lipofill::client {
 
-/// Puts slices together to whole arrays. Never holds more than what was received: a slice that claims a huge array
-/// costs nothing. UINT16 codes become the float32 values they stand for. Checked by
-/// tests/unit/client/array_assembler_test.cc.
+/// Puts slices together to whole arrays. Never holds more than what was received: a slice that
+/// claims a huge array costs nothing. UINT16 codes become the float32 values they stand for.
+/// Checked by tests/unit/client/array_assembler_test.cc.
 class ArrayAssembler {
  public:
   /// Adds a slice. DATA_LOSS for one that does not follow the one before it, or that goes beyond

@@ -20,12 +20,12 @@ inline constexpr char kDefaultServer[] = "127.0.0.1:50061";
 /// Address from LIPOFILL_SERVER if it is set, else kDefaultServer.
 std::string default_server();
 
-/// A gRPC status as a status of this library, with its details; UNAVAILABLE and UNAUTHENTICATED say which daemon
-/// was asked and what to do.
+/// A gRPC status as a status of this library, with its details; UNAVAILABLE and UNAUTHENTICATED say
+/// which daemon was asked and what to do.
 absl::Status status_of(const grpc::Status& status, const std::string& server);
 
-/// A daemon to talk to. Calls end with CANCELLED soon after the stop token asks for it. Thread-safe; copies share the
-/// channel.
+/// A daemon to talk to. Calls end with CANCELLED soon after the stop token asks for it.
+/// Thread-safe; copies share the channel.
 ///
 ///     Connection connection("127.0.0.1:50061");
 ///     absl::StatusOr<v1::Patient> patient = connection.call<v1::PatientService>(&v1::PatientService::Stub::GetPatient,

@@ -11,8 +11,8 @@
 
 namespace lipofill::client {
 
-/// Files by which a client says who it is, and knows the daemon. Secrets come from files, never from a command line,
-/// which every user of a machine can read.
+/// Files by which a client says who it is, and knows the daemon. Secrets come from files, never
+/// from a command line, which every user of a machine can read.
 struct CredentialFiles {
   std::string token;     ///< a bearer token; read again for every call, so that it may be renewed
   std::string tls_ca;    ///< PEM: authorities of the daemon's certificate; with it the connection is encrypted
@@ -32,8 +32,9 @@ struct Credentials {
   std::string key_pem;
 };
 
-/// Reads the files. INVALID_ARGUMENT naming the one that cannot be read or is missing beside another, and for a token
-/// that would travel unencrypted to another machine. Checked by tests/unit/client/credentials_test.cc.
+/// Reads the files. INVALID_ARGUMENT naming the one that cannot be read or is missing beside
+/// another, and for a token that would travel unencrypted to another machine. Checked by
+/// tests/unit/client/credentials_test.cc.
 absl::StatusOr<Credentials> read_credentials(const CredentialFiles& files, const std::string& server);
 
 /// A channel whose calls carry the credentials.

@@ -13,8 +13,8 @@ class Status;
 
 namespace lipofill::client {
 
-/// One thing wrong with one field of a request: its path in the wire schema, and a sentence with the value and the
-/// bound.
+/// One thing wrong with one field of a request: its path in the wire schema, and a sentence with
+/// the value and the bound.
 struct FieldViolation {
   std::string field;
   std::string description;

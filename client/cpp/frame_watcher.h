@@ -38,12 +38,13 @@ struct WatchHandlers {
   std::function<void(const absl::Status&)> on_resume;
 };
 
-/// Watches a simulation to its end. A stream that breaks (the daemon restarts, or ends a viewer that fell behind) is
-/// taken up again after the last frame seen, up to `kMaxResumes` times in a row without a frame between. The meshes
-/// come once, and again only when they changed. A daemon that is silent for kSilentHeartbeats of the heartbeats asked
-/// for counts as a broken stream. With max_unacknowledged_frames each frame is acknowledged once on_frame has returned,
-/// by a viewer name of the library's own where the request has none. CANCELLED when the connection's stop was asked
-/// for. Checked by tests/unit/client/frame_watcher_test.cc and tests/integration/cli/.
+/// Watches a simulation to its end. A stream that breaks (the daemon restarts, or ends a viewer
+/// that fell behind) is taken up again after the last frame seen, up to `kMaxResumes` times in a
+/// row without a frame between. The meshes come once, and again only when they changed. A daemon
+/// that is silent for kSilentHeartbeats of the heartbeats asked for counts as a broken stream. With
+/// max_unacknowledged_frames each frame is acknowledged once on_frame has returned, by a viewer
+/// name of the library's own where the request has none. CANCELLED when the connection's stop was
+/// asked for. Checked by tests/unit/client/frame_watcher_test.cc and tests/integration/cli/.
 absl::Status watch(const Connection& connection, v1::WatchRequest request, const WatchHandlers& handlers);
 
 inline constexpr int kMaxResumes = 8;

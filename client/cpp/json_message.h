@@ -8,9 +8,9 @@
 
 namespace lipofill::client {
 
-/// Reads the proto3 JSON form of a message from a file. INVALID_ARGUMENT naming the file, with a violation for each
-/// unknown field, its path and the nearest known name, and for each name that an enum does not have. Checked by
-/// tests/unit/client/plan_file_test.cc.
+/// Reads the proto3 JSON form of a message from a file. INVALID_ARGUMENT naming the file, with a
+/// violation for each unknown field, its path and the nearest known name, and for each name that an
+/// enum does not have. Checked by tests/unit/client/plan_file_test.cc.
 absl::Status load_message(const std::filesystem::path& path, google::protobuf::Message* message);
 
 /// The proto3 JSON form of a message, with the schema's own field names and no field left out.

@@ -25,10 +25,11 @@ struct Landmarks {
   std::optional<Axes> axes;
 };
 
-/// Reads landmarks from JSON: the object "landmarks" of name to [x, y, z], or the object named after a '#' in the path
-/// (case.json#landmarks_before); optionally "axes" with "left", "up" and "forward". "units" in the file ("mm", "cm",
-/// "m") says in what the numbers are; without it they are in the unit of the scan. INVALID_ARGUMENT, naming the file
-/// and the entry, for anything else. Checked by tests/unit/client/landmarks_file_test.cc.
+/// Reads landmarks from JSON: the object "landmarks" of name to [x, y, z], or the object named
+/// after a '#' in the path (case.json#landmarks_before); optionally "axes" with "left", "up" and
+/// "forward". "units" in the file ("mm", "cm", "m") says in what the numbers are; without it they
+/// are in the unit of the scan. INVALID_ARGUMENT, naming the file and the entry, for anything else.
+/// Checked by tests/unit/client/landmarks_file_test.cc.
 absl::StatusOr<Landmarks> load_landmarks(const std::string& path, v1::ScanUnit scan_unit);
 
 /// Puts landmarks into a region; its own axes stay where it has them.

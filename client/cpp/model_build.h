@@ -13,12 +13,13 @@ namespace lipofill::client {
 /// Takes the present stage of the operation, and its progress in [0, 1].
 using BuildProgress = std::function<void(const std::string&, double)>;
 
-/// Waits for an operation to be done, telling every progress. The operation's own error is the error of the call.
-/// CANCELLED, the operation going on, when the connection's stop is asked for.
+/// Waits for an operation to be done, telling every progress. The operation's own error is the
+/// error of the call. CANCELLED, the operation going on, when the connection's stop is asked for.
 absl::StatusOr<v1::Operation> wait_operation(const Connection& connection, v1::Operation operation,
                                              const BuildProgress& progress = {});
 
-/// Builds a model and waits for it. When the connection's stop is asked for, the building is cancelled too.
+/// Builds a model and waits for it. When the connection's stop is asked for, the building is
+/// cancelled too.
 /// Checked by tests/integration/cli/.
 absl::StatusOr<v1::Model> build_model(const Connection& connection, const v1::BuildModelRequest& request,
                                       const BuildProgress& progress = {});

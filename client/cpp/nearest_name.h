@@ -24,8 +24,8 @@ inline size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// Returns the name that someone who wrote `word` may have meant; empty when none is near. Checked by
-/// tests/unit/client/plan_file_test.cc and tests/integration/cli/bad_input_test.cc.
+/// Returns the name that someone who wrote `word` may have meant; empty when none is near. Checked
+/// by tests/unit/client/plan_file_test.cc and tests/integration/cli/bad_input_test.cc.
 inline std::string find_nearest_name(std::string_view word, const std::vector<std::string>& names) {
   std::string nearest;
   size_t nearest_distance = std::max<size_t>(word.size() / 2, 2);

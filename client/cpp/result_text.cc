@@ -110,7 +110,8 @@ std::string series_csv(const v1::SimulationSpec& spec, const std::vector<v1::Ser
   };
   std::string csv;
   add_line(csv, [](const SeriesColumn& column) { return column.name; });
-  // A row without the probe leaves its columns empty, so that the columns after it stay in their place.
+  // A row without the probe leaves its columns empty, so that the columns after it stay in their
+  // place.
   for (const v1::SeriesRow& row : rows) {
     add_line(csv, [&row](const SeriesColumn& column) { return value_text(row, column); });
   }

@@ -39,7 +39,8 @@ std::string sha256_of_text(const std::string& text) {
   return hex(digest, size);
 }
 
-/// Announces the scan. The request id is made of its content, so that a repeated call finds what the first one began.
+/// Announces the scan. The request id is made of its content, so that a repeated call finds what
+/// the first one began.
 absl::StatusOr<v1::Scan> announce(const Connection& connection, const std::string& parent,
                                   const std::filesystem::path& file, v1::ScanUnit unit) {
   const auto format = scan_format_of(file);
@@ -74,8 +75,8 @@ absl::StatusOr<v1::Scan> send_rest(const Connection& connection, const v1::Scan&
   chunk.set_name(scan.name());
   uint64_t offset = scan.received_bytes();
   std::vector<char> buffer(kUploadChunkBytes);
-  // The first message goes also where all bytes are there already: the daemon may have ended before it could complete
-  // the scan.
+  // The first message goes also where all bytes are there already: the daemon may have ended before
+  // it could complete the scan.
   while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())),
          stream.gcount() > 0 || !chunk.name().empty()) {
     chunk.set_offset(offset);

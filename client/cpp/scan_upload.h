@@ -22,9 +22,9 @@ absl::StatusOr<v1::ScanFormat> scan_format_of(const std::filesystem::path& file)
 /// SHA-256 of a file, lower-case hex.
 absl::StatusOr<std::string> sha256_of_file(const std::filesystem::path& file);
 
-/// Announces a scan under a patient and sends its bytes in chunks of at most 1 MiB. A stream that breaks is taken up
-/// from what the daemon has received; a scan of the same bytes that the same request began before is completed, not
-/// sent again.
+/// Announces a scan under a patient and sends its bytes in chunks of at most 1 MiB. A stream that
+/// breaks is taken up from what the daemon has received; a scan of the same bytes that the same
+/// request began before is completed, not sent again.
 /// @param parent  patients/{patient}
 /// Checked by tests/unit/client/scan_upload_test.cc and tests/integration/cli/.
 absl::StatusOr<v1::Scan> upload_scan(const Connection& connection, const std::string& parent,

@@ -9,8 +9,8 @@
 
 namespace lipofill::client {
 
-/// Notices that something waited for does not come: calls `on_silence` once, on a thread of its own, when a wait lasts
-/// longer than `limit`. What is done between waits may take any time.
+/// Notices that something waited for does not come: calls `on_silence` once, on a thread of its
+/// own, when a wait lasts longer than `limit`. What is done between waits may take any time.
 /// Checked by tests/unit/client/silence_watch_test.cc.
 class SilenceWatch {
  public:

@@ -1,18 +1,19 @@
 #!/usr/bin/env python3
-"""The paper's Figure 1: height at the centre of a square over time, for three time steps, resolutions and stiffnesses.
+"""The paper's Figure 1: height at the centre of a square over time, for three time steps,
+resolutions and stiffnesses.
 
-A film lies between a rigid square and a soft one whose rim is clamped. It starts as a tunnel in the middle, which sinks and
-spreads. Every run goes through `lipofill run --spawn`, with a plan made from plans/square.json.
+A film lies between a rigid square and a soft one whose rim is clamped. It starts as a tunnel in the
+middle, which sinks and spreads. Every run goes through `lipofill run --spawn`, with a plan made
+from plans/square.json.
 
   figure_1.py --lipofill BIN --out FOLDER [--page PAGE.md]   CSVs and plots; the measured figures go into the page
-  figure_1.py --lipofill BIN --check                         a small version without plots: fails unless curves converge and
-                                                             order by stiffness
+  figure_1.py --lipofill BIN --check                         a small version without plots: fails unless curves
+                                                             converge and order by stiffness
 
 Exit code 1: they do not; 2: a run failed. The same results give the same bytes.
 """
 
 import argparse
-import copy
 import csv
 import dataclasses
 import json
@@ -21,6 +22,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import textwrap
 
 BASE_PLAN = pathlib.Path(__file__).parent / "plans" / "square.json"
 SIDE_MM = 60.0
@@ -71,7 +73,9 @@ CHECK = Study((80, 40, 20), (5, 9, 15), (50, 100, 200), 40, 0.8, 0.7, 1.3)
 
 
 def tunnel_mm(x, y):
-    """Thickness at the start: 3 mm at the centre, 12 mm wide and 31 mm long at half height, five times differentiable."""
+    """Thickness at the start: 3 mm at the centre, 12 mm wide and 31 mm long at half height, five
+    times differentiable.
+    """
     across = math.cos(math.pi * x / 40.0) ** 6 if abs(x) < 20.0 else 0.0
     along = (1.0 - (y / 27.0) ** 4) ** 6 if abs(y) < 27.0 else 0.0
     return REST_MM + 2.0 * across * along
@@ -87,7 +91,8 @@ def make_plan(run, end_s):
     film = simulation["films"][0]
     film["n_xi"] = film["n_eta"] = run.film_cells
     film["rest_thickness_mm"] = {"constant": REST_MM}
-    # Samples at the corners, sides and centres of cells: a cell starts with the thickness at its centre, exactly.
+    # Samples at the corners, sides and centres of cells: a cell starts with the thickness at its
+    # centre, exactly.
     n = 2 * run.film_cells + 1
     places = [SIDE_MM * (i / (n - 1) - 0.5) for i in range(n)]
     values = [round(tunnel_mm(x, y), 6) for y in places for x in places]
@@ -102,8 +107,9 @@ def simulate(lipofill, run, end_s, folder):
     plan = folder / f"{run.name}.json"
     plan.write_text(json.dumps(make_plan(run, end_s)))
     out = folder / run.name
-    subprocess.run([lipofill, "run", plan, "--spawn", "--out", out, "--interval-ms", "0", "--no-picture", "--quiet"],
-                   check=True)
+    subprocess.run(
+        [lipofill, "run", plan, "--spawn", "--out", out, "--interval-ms", "0", "--no-picture", "--quiet"], check=True
+    )
     heights = {0: tunnel_mm(0.0, 0.0)}
     volumes = []
     with open(out / "series.csv", newline="") as rows:
@@ -118,8 +124,11 @@ def simulate_all(lipofill, study):
     heights, volume_error = {}, 0.0
     with tempfile.TemporaryDirectory() as folder:
         for number, run in enumerate(study.all_runs(), 1):
-            print(f"figure_1: run {number} of {len(study.all_runs())}, {run.step_ms:g} ms, {run.film_cells} x "
-                  f"{run.film_cells} cells, {run.modulus_kpa:g} kPa", flush=True)
+            print(
+                f"figure_1: run {number} of {len(study.all_runs())}, {run.step_ms:g} ms, {run.film_cells} x "
+                f"{run.film_cells} cells, {run.modulus_kpa:g} kPa",
+                flush=True,
+            )
             heights[run], error = simulate(lipofill, run, study.end_s, pathlib.Path(folder))
             volume_error = max(volume_error, error)
     return heights, volume_error
@@ -200,25 +209,39 @@ def write_convergence(path, step, cell):
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["refined", "coarse", "middle", "fine", "coarse_to_middle_mm", "middle_to_fine_mm", "order"])
         for study in (step, cell):
-            writer.writerow([study.what] + [f"{size:g}" for size in study.sizes] +
-                            [f"{difference:.3e}" for difference in study.differences] + [f"{study.order:.2f}"])
+            writer.writerow(
+                [study.what]
+                + [f"{size:g}" for size in study.sizes]
+                + [f"{difference:.3e}" for difference in study.differences]
+                + [f"{study.order:.2f}"]
+            )
 
 
 def write_page(page, step, cell, collapse, volume_error):
     """Replaces what stands between the page's two marks."""
-    lines = ["| refined | coarse, middle, fine | coarse to middle | middle to fine | observed order |", "|---|---|---|---|---|"]
+    lines = [
+        "| refined | coarse, middle, fine | coarse to middle | middle to fine | observed order |",
+        "|---|---|---|---|---|",
+    ]
     for study in (step, cell):
         sizes = ", ".join(f"{size:.3g}" for size in study.sizes)
-        lines.append(f"| {study.what} | {sizes} | {1e3 * study.differences[0]:.2f} um | "
-                     f"{1e3 * study.differences[1]:.2f} um | {study.order:.2f} |")
-    lines += ["", f"The film's volume changes by at most {volume_error:.0e} of itself in any of the runs. "
-              f"Drawn over time multiplied by stiffness, the three curves differ by at most {1e3 * collapse:.1f} um."]
+        lines.append(
+            f"| {study.what} | {sizes} | {1e3 * study.differences[0]:.2f} um | "
+            f"{1e3 * study.differences[1]:.2f} um | {study.order:.2f} |"
+        )
+    told = (
+        f"The film's volume changes by at most {volume_error:.0e} of itself in any of the runs. "
+        f"Drawn over time multiplied by stiffness, the three curves differ by at most {1e3 * collapse:.1f} um."
+    )
+    lines += ["", *textwrap.wrap(told, 120)]
     before, _, after = page.read_text().split("<!-- measured -->")
     page.write_text("<!-- measured -->".join([before, "\n" + "\n".join(lines) + "\n", after]))
 
 
 def plot_curves(path, study, curves, heights, lower):
-    """`curves`: run and label pairs. `lower`: draws the small plot below from its axes and colours."""
+    """Plots pairs of a run and its label; `lower` draws the small plot below from its axes and
+    colours.
+    """
     from matplotlib import pyplot
 
     figure, (top, bottom) = pyplot.subplots(2, 1, figsize=(6.4, 5.6), height_ratios=[2, 1], layout="constrained")
@@ -244,8 +267,9 @@ def draw_differences(study, curves, heights):
     def draw(axes, colours):
         times = [t for t in common_times(study) if t > 0]
         for (run, _), colour, line in zip(curves[:-1], colours, ["--", "-."]):
-            axes.semilogy([1e-3 * t for t in times], [1e3 * abs(heights[run][t] - finest[t]) for t in times], line,
-                          color=colour)
+            axes.semilogy(
+                [1e-3 * t for t in times], [1e3 * abs(heights[run][t] - finest[t]) for t in times], line, color=colour
+            )
         axes.set_xlabel("time [s]")
         axes.set_ylabel(f"distance from\n{finest_label} [um]")
         axes.set_xlim(0.0, study.end_s)
@@ -260,8 +284,12 @@ def draw_scaled(study, curves, heights):
     def draw(axes, colours):
         for (run, _), colour, line in zip(curves, colours, ["--", "-.", "-"]):
             times = [t for t in common_times(study) if t > 0]
-            axes.semilogx([1e-3 * t * run.modulus_kpa / reference for t in times], [heights[run][t] for t in times], line,
-                          color=colour)
+            axes.semilogx(
+                [1e-3 * t * run.modulus_kpa / reference for t in times],
+                [heights[run][t] for t in times],
+                line,
+                color=colour,
+            )
         axes.set_xlabel(f"time x E / ({reference:g} kPa) [s]")
         axes.set_ylabel("height [mm]")
 
@@ -304,8 +332,13 @@ def main():
         return 2
     step, cell, collapse = measure(study, heights)
     for study_of in (step, cell):
-        print(f"figure_1: {study_of.what} {study_of.sizes}: differences {study_of.differences} mm, order {study_of.order:.2f}")
-    print(f"figure_1: volume to {volume_error:.1e}; over time x stiffness the curves differ by at most {collapse:.2e} mm")
+        print(
+            f"figure_1: {study_of.what} {study_of.sizes}: differences {study_of.differences} mm, "
+            f"order {study_of.order:.2f}"
+        )
+    print(
+        f"figure_1: volume to {volume_error:.1e}; over time x stiffness the curves differ by at most {collapse:.2e} mm"
+    )
     faults = find_faults(study, heights, step, cell, volume_error)
     if not arguments.check:
         arguments.out.mkdir(parents=True, exist_ok=True)

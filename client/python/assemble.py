@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""Puts the Python package together in a build tree: the hand-written modules, and what protoc makes of the wire schema.
+"""Puts the Python package together in a build tree: the hand-written modules, and what protoc makes
+of the wire schema.
 
-The folder can be used in place (PYTHONPATH) and installed (`pip install FOLDER`). Hand-written files are linked, so that an edit
-shows at once. google.rpc goes to lipofill.google_rpc.own: other packages bring a google.rpc of their own.
+The folder can be used in place (PYTHONPATH) and installed (`pip install FOLDER`). Hand-written
+files are linked, so that an edit shows at once. google.rpc goes to lipofill.google_rpc.own: other
+packages bring a google.rpc of their own.
 
-    assemble.py --proto proto --out build/release/python [--protoc protoc] [--grpc-plugin grpc_python_plugin]
+    assemble.py --proto proto --out build/release/python [--protoc protoc]
+        [--grpc-plugin grpc_python_plugin]
 """
 
 import argparse
@@ -19,7 +22,9 @@ WELL_KNOWN = {"google.protobuf.Empty": "google.protobuf.empty_pb2.Empty"}
 
 
 def link_sources(out):
-    """Links every hand-written file below lipofill/, and what pip needs, and takes away links that lead nowhere."""
+    """Links every hand-written file below lipofill/, and what pip needs, and takes away links that
+    lead nowhere.
+    """
     for link in out.rglob("*"):
         if link.is_symlink() and not link.exists():
             link.unlink()

@@ -1,5 +1,6 @@
-// Builds the page and its gateway into build/web: types of the wire from the schema, a check of all types, the page, the
-// gateway as one file. Packages are those that deploy/setup put into build/web/node_modules.
+// Builds the page and its gateway into build/web: types of the wire from the schema, a check of all
+// types, the page, the gateway as one file. Packages are those that deploy/setup put into
+// build/web/node_modules.
 //
 //   node client/web/build.mjs            all of it
 //   node client/web/build.mjs --wire     only the types of the wire

@@ -1,7 +1,8 @@
 import { defineConfig, mergeConfig } from "vitest/config";
 import page from "./vite.config";
 
-// One after the other: they share the machine's cores with the daemon and a browser without a graphics card.
+// One after the other: they share the machine's cores with the daemon and a browser without a
+// graphics card.
 export default mergeConfig(
   page,
   defineConfig({

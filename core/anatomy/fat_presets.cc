@@ -15,7 +15,8 @@ constexpr double kLargestYieldStress = 20.0;  // [Pa] assumed
 constexpr double kNanofatModulus = 35.0;      // [Pa] Ding 2021
 constexpr double kSvfGelModulus = 202.0;      // [Pa] Ding 2021
 
-/// A preparation of which the elastic modulus was measured: its flow is that of Coleman fat, in proportion.
+/// A preparation of which the elastic modulus was measured: its flow is that of Coleman fat, in
+/// proportion.
 FatFigures in_proportion_to_coleman(double shear_modulus) {
   return {kColemanConsistency * shear_modulus / kColemanModulus, kFlowIndex,
           std::min(kYieldStrain * shear_modulus, kLargestYieldStress), shear_modulus, kDensity};

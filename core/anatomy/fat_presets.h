@@ -32,13 +32,15 @@ struct FatFigures {
 /// | NANOFAT   | 24          | 0.28 | 3.5          | 35  |
 /// | SVF_GEL   | 138.5       | 0.28 | 20           | 202 |
 ///
-/// Sources. G' of the three preparations and G'' = 25 Pa of Coleman fat, at 0.77 Hz and 25 C: Ding 2021. n = 0.28:
-/// inferred from Ding 2021 and Lee 2011. Consistency of Coleman fat: the dynamic viscosity |G*| / omega = 15.4 Pa s at
-/// 0.77 Hz is 48 omega^(n-1); the Newtonian default is that viscosity, rounded. Assumed: the loss tangent of the other
-/// two is that of Coleman fat, so that their consistency goes with G'; every yield stress is a tenth of G' (a yield
-/// strain of 0.1), at most 20 Pa, within the 1-20 Pa thought possible; density 920 kg/m3.
+/// Sources. G' of the three preparations and G'' = 25 Pa of Coleman fat, at 0.77 Hz and 25 C: Ding
+/// 2021. n = 0.28: inferred from Ding 2021 and Lee 2011. Consistency of Coleman fat: the dynamic
+/// viscosity |G*| / omega = 15.4 Pa s at 0.77 Hz is 48 omega^(n-1); the Newtonian default is that
+/// viscosity, rounded. Assumed: the loss tangent of the other two is that of Coleman fat, so that
+/// their consistency goes with G'; every yield stress is a tenth of G' (a yield strain of 0.1), at
+/// most 20 Pa, within the 1-20 Pa thought possible; density 920 kg/m3.
 ///
-/// The elastic modulus is a measurement of the preparation as injected, not of the graft that takes.
+/// The elastic modulus is a measurement of the preparation as injected, not of the graft that
+/// takes.
 /// Checked by tests/unit/anatomy/fat_presets_test.cc.
 FatFigures figures_of(FatPreset preset);
 

@@ -94,7 +94,8 @@ class LandmarkReader {
   std::string missing_;
 };
 
-/// The point of the parabola of the mandible's border at an arc length from the midline, and `above` it.
+/// The point of the parabola of the mandible's border at an arc length from the midline, and
+/// `above` it.
 Eigen::Vector3d find_on_mandible(const geometry::HeadAxes& axes, const Eigen::Vector3d& menton,
                                  const Eigen::Vector3d& gonion, const OnMandible& place) {
   const Eigen::Vector3d chord = gonion - menton;

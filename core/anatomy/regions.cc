@@ -18,7 +18,7 @@ namespace {
 struct RegionRow {
   const char* name;
   std::vector<std::pair<const char*, double>> weights;  ///< without their side
-  double outward_mm;                                    ///< to the side of the face it lies on
+  double outward_mm;                                    ///< the centre lies this far towards its side of the face
   double up_mm;
   double forward_mm;
   const char* axis_from;  ///< empty: across the face
@@ -27,8 +27,9 @@ struct RegionRow {
   double half_width_mm;
 };
 
-/// Regions on the skin over the structure each is named after, on a head of average size; places and sizes are assumed.
-/// Means of landmarks lie inside the face; the skin is found from there along the outward normal.
+/// Regions on the skin over the structure each is named after, on a head of average size; places
+/// and sizes are assumed. Means of landmarks lie inside the face; the skin is found from there
+/// along the outward normal.
 const std::vector<RegionRow>& rows() {
   static const std::vector<RegionRow> table = {
       {"masseter", {{"zygion", 0.50}, {"gonion", 0.40}, {"cheilion", 0.10}}, 0, 0, 0, "gonion", "zygion", 30, 23},

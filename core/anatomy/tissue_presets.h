@@ -29,12 +29,13 @@ struct TissueFigures {
 /// | smas         | 1 (assumed)    | 50 (20-200)         | 90 (assumed)     | 0.45 | 1050          |
 /// | muscle       | 10 (8.7-15)    | 20 (10-500)         | 500              | 0.49 | 1050          |
 ///
-/// Sources. Thickness: skin, subcutaneous Clin Anat 2019 (pubmed 30882511); masseter Kiliaridis 1991. Elastography:
-/// skin after the paper's range; fat JMBBM 2023 (|G*| 752 Pa); SMAS Har-Shai 1996/97 (like skin, less viscous); muscle
-/// at rest 7-36 kPa. Paper: Majorczyk et al., skin 0.09-0.5 MPa and muscle 0.5 MPa; it has no other layer and gives
-/// neither Poisson ratio nor density nor thickness, so its subcutaneous fat and SMAS take the softest modulus it names,
-/// the rest is as in the other preset (assumed). Its muscle is some 25 times stiffer than muscle at rest: predicted
-/// pressure depends on it. Checked by tests/unit/anatomy/tissue_presets_test.cc.
+/// Sources. Thickness: skin, subcutaneous Clin Anat 2019 (pubmed 30882511); masseter Kiliaridis
+/// 1991. Elastography: skin after the paper's range; fat JMBBM 2023 (|G*| 752 Pa); SMAS Har-Shai
+/// 1996/97 (like skin, less viscous); muscle at rest 7-36 kPa. Paper: Majorczyk et al., skin
+/// 0.09-0.5 MPa and muscle 0.5 MPa; it has no other layer and gives neither Poisson ratio nor
+/// density nor thickness, so its subcutaneous fat and SMAS take the softest modulus it names, the
+/// rest is as in the other preset (assumed). Its muscle is some 25 times stiffer than muscle at
+/// rest: predicted pressure depends on it. Checked by tests/unit/anatomy/tissue_presets_test.cc.
 TissueFigures figures_of(TissuePreset preset, TissueKind kind);
 
 /// Name of a kind of tissue: "skin", "subcutaneous", "smas", "muscle".

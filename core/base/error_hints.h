@@ -11,7 +11,7 @@ namespace lipofill {
 /// makes sense to try again.
 struct ErrorHints {
   std::string reason;                   ///< "DRAINING"; upper case with underscores
-  std::optional<double> retry_delay_s;  ///< at the earliest
+  std::optional<double> retry_delay_s;  ///< the caller may try again after it, not before
 };
 
 /// The status with hints. An OK status stays as it is. Checked by tests/unit/base/base_test.cc.

@@ -8,8 +8,8 @@
 
 namespace lipofill {
 
-/// One thing wrong with one field of what a caller gave: the field's path in the wire schema, and a sentence with the
-/// value and the bound it breaks.
+/// One thing wrong with one field of what a caller gave: the field's path in the wire schema, and a
+/// sentence with the value and the bound it breaks.
 struct FieldViolation {
   std::string field;
   std::string description;
@@ -32,8 +32,8 @@ class FieldViolations {
   /// Checks that `value` is in [low, high).
   void check_half_open(std::string_view field, double value, double low, double high, std::string_view unit);
 
-  /// Takes over the violations of a status of this kind, their fields below `prefix`; any other error becomes a
-  /// violation of `prefix` itself.
+  /// Takes over the violations of a status of this kind, their fields below `prefix`; any other
+  /// error becomes a violation of `prefix` itself.
   void absorb(std::string_view prefix, const absl::Status& status);
 
   bool empty() const { return violations_.empty(); }

@@ -8,12 +8,11 @@
 namespace lipofill {
 
 struct Hasher::State {
-  EVP_MD_CTX* context = EVP_MD_CTX_new();
-  ~State() { EVP_MD_CTX_free(context); }
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context{EVP_MD_CTX_new(), &EVP_MD_CTX_free};
 };
 
 Hasher::Hasher() : state_(std::make_unique<State>()) {
-  if (state_->context == nullptr || EVP_DigestInit_ex(state_->context, EVP_sha256(), nullptr) != 1) {
+  if (state_->context == nullptr || EVP_DigestInit_ex(state_->context.get(), EVP_sha256(), nullptr) != 1) {
     throw std::bad_alloc();
   }
 }
@@ -21,7 +20,7 @@ Hasher::Hasher() : state_(std::make_unique<State>()) {
 Hasher::~Hasher() = default;
 
 void Hasher::add_bytes(const void* data, size_t size) {
-  EVP_DigestUpdate(state_->context, data, size);
+  EVP_DigestUpdate(state_->context.get(), data, size);
 }
 
 void Hasher::add(std::string_view text) {
@@ -32,7 +31,7 @@ void Hasher::add(std::string_view text) {
 std::string Hasher::hex_digest() {
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
   unsigned int size = 0;
-  EVP_DigestFinal_ex(state_->context, digest.data(), &size);
+  EVP_DigestFinal_ex(state_->context.get(), digest.data(), &size);
   constexpr char kHex[] = "0123456789abcdef";
   std::string text;
   for (unsigned int i = 0; i < size; ++i) {

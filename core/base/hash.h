@@ -10,9 +10,9 @@
 
 namespace lipofill {
 
-/// SHA-256 over a sequence of values, for the names of immutable things and for proving that two runs are the same to
-/// the byte. Numbers enter as their bytes in memory (little-endian on every machine the project supports). Checked by
-/// tests/unit/base/base_test.cc against FIPS 180-4.
+/// SHA-256 over a sequence of values, for the names of immutable things and for proving that two
+/// runs are the same to the byte. Numbers enter as their bytes in memory (little-endian on every
+/// machine the project supports). Checked by tests/unit/base/base_test.cc against FIPS 180-4.
 class Hasher {
  public:
   Hasher();

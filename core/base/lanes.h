@@ -7,7 +7,8 @@
 #include <immintrin.h>
 #endif
 
-// Everything here is inlined, so that no vector crosses a call on processors whose calls cannot pass one.
+// Everything here is inlined, so that no vector crosses a call on processors whose calls cannot
+// pass one.
 #define LIPOFILL_INLINE inline __attribute__((always_inline))
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
@@ -16,9 +17,9 @@ namespace lipofill {
 
 inline constexpr int kLanes = 4;
 
-/// A number of each of kLanes things - hexahedra, pieces of a film cell - worked on side by side. Operators work lane
-/// by lane, comparisons give masks, and mask ? a : b chooses. Four fill a register of AVX2; eight in two registers, as
-/// measured, only spill.
+/// A number of each of kLanes things - hexahedra, pieces of a film cell - worked on side by side.
+/// Operators work lane by lane, comparisons give masks, and mask ? a : b chooses. Four fill a
+/// register of AVX2; eight in two registers, as measured, only spill.
 using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
 using LaneMask = std::int64_t __attribute__((vector_size(kLanes * sizeof(double))));
 
@@ -113,7 +114,8 @@ LIPOFILL_INLINE Vector3<T> cross(const Vector3<T>& a, const Vector3<T>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Points kLanes places apart from one another: lane k is points[3 k' ...] of the index places[k] (3, n_points).
+/// Points kLanes places apart from one another: lane k is points[3 k' ...] of the index places[k]
+/// (3, n_points).
 LIPOFILL_INLINE Vector3<Lanes> gather_points(const double* points, const int (&places)[kLanes]) {
   Vector3<Lanes> gathered;
   for (int lane = 0; lane < kLanes; ++lane) {

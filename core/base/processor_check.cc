@@ -1,5 +1,6 @@
-// Linked into every program as it is, and compiled for any processor of the family (see CMakeLists.txt): says what is
-// missing before the first instruction that an older processor does not know.
+// Linked into every program as it is, and compiled for any processor of the family (see
+// CMakeLists.txt): says what is missing before the first instruction that an older processor does
+// not know.
 
 #include <unistd.h>
 

@@ -10,16 +10,16 @@
 
 namespace lipofill {
 
-/// Immutable values that equal requests share as long as anyone holds them; it holds none itself. Thread-safe. Two who
-/// ask for the same at once may both make it, and then share what the first one made. Checked by
-/// tests/unit/base/shared_cache_test.cc.
+/// Immutable values that equal requests share as long as anyone holds them; it holds none itself.
+/// Thread-safe. Two who ask for the same at once may both make it, and then share what the first
+/// one made. Checked by tests/unit/base/shared_cache_test.cc.
 template <typename Value>
 class SharedCache {
  public:
   using Pointer = std::shared_ptr<const Value>;
 
-  /// The value under `key`; where there is none, what `make` returns: an absl::StatusOr<Pointer>. Equal keys must mean
-  /// equal values.
+  /// The value under `key`; where there is none, what `make` returns: an absl::StatusOr<Pointer>.
+  /// Equal keys must mean equal values.
   template <typename Make>
   absl::StatusOr<Pointer> get(const std::string& key, const Make& make) {
     if (Pointer held = find(key)) return held;

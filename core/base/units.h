@@ -1,8 +1,9 @@
 #pragma once
 
-// Factors between SI and the units of messages, files and sentences, under one name each: kAsPerB is how many A make a
-// B, so that a value in B times kAsPerB is in A, and one in A divided by it in B. To divide by kAsPerB and to multiply
-// by kBsPerA differ in the last bit: a place that does one goes on doing it.
+// Factors between SI and the units of messages, files and sentences, under one name each: kAsPerB
+// is how many A make a B, so that a value in B times kAsPerB is in A, and one in A divided by it in
+// B. To divide by kAsPerB and to multiply by kBsPerA differ in the last bit: a place that does one
+// goes on doing it.
 
 #include <numbers>
 

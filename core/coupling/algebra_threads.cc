@@ -8,8 +8,8 @@
 extern "C" {
 void openblas_set_num_threads(int n_threads);
 char* openblas_get_corename();
-// OpenBLAS has no call that chooses kernels; these two read OPENBLAS_CORETYPE again. Builds for one processor alone
-// lack them.
+// OpenBLAS has no call that chooses kernels; these two read OPENBLAS_CORETYPE again. Builds for one
+// processor alone lack them.
 [[gnu::weak]] void gotoblas_dynamic_init();
 [[gnu::weak]] void gotoblas_dynamic_quit();
 }
@@ -30,7 +30,8 @@ bool can_run_pinned_kernels() {
 #endif
 }
 
-/// Pins the kernels and puts the variable back, so that programs which this one starts choose for themselves.
+/// Pins the kernels and puts the variable back, so that programs which this one starts choose for
+/// themselves.
 bool pin_kernels() {
   if (!can_run_pinned_kernels()) return false;
   const char* given = std::getenv(kVariable);
@@ -52,8 +53,8 @@ const bool tried_to_pin = pin_kernels();
 }  // namespace
 
 void pin_algebra_to_this_thread() {
-  // Debian's CHOLMOD opens OpenMP regions of four threads for copying loops. The first setting is a thread's own, the
-  // second the process's.
+  // Debian's CHOLMOD opens OpenMP regions of four threads for copying loops. The first setting is a
+  // thread's own, the second the process's.
   omp_set_max_active_levels(0);
   static const bool once = [] {
     openblas_set_num_threads(1);

@@ -1,7 +1,7 @@
 #pragma once
 
-// The few BLAS and LAPACK routines of the factorisation, for float and double under one name. Matrices are
-// column-major.
+// The few BLAS and LAPACK routines of the factorisation, for float and double under one name.
+// Matrices are column-major.
 
 extern "C" {
 void sgemm_(const char*, const char*, const int*, const int*, const int*, const float*, const float*, const int*,

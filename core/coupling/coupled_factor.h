@@ -14,14 +14,14 @@ enum class Precision { kSingle, kDouble };
 
 /// Solves with the tissue's S and what it gives the films: the compliance C = B S^-1 B^T.
 ///
-/// The dense route, for an analysis with pressures in it, has C at hand from the factorisation (supernodal_factor.h)
-/// and takes the two halves of a solve apart: forward for the gap's response, backward for the displacement once the
-/// pressure is known. The implicit route, for an analysis of S alone, has no C, only its product with a vector: one
-/// solve each.
+/// The dense route, for an analysis with pressures in it, has C at hand from the factorisation
+/// (supernodal_factor.h) and takes the two halves of a solve apart: forward for the gap's response,
+/// backward for the displacement once the pressure is known. The implicit route, for an analysis of
+/// S alone, has no C, only its product with a vector: one solve each.
 ///
-/// In float32 solutions are good to about 1e-6 relative on faces: enough for a left side, whose errors the next
-/// iteration makes good; float64 is there for tissue that has no positive pivots in float32.
-/// Decision record: core/doc/decisions/009-single-precision-factor.md.
+/// In float32 solutions are good to about 1e-6 relative on faces: enough for a left side, whose
+/// errors the next iteration makes good; float64 is there for tissue that has no positive pivots in
+/// float32. Decision record: core/doc/decisions/009-single-precision-factor.md.
 /// Checked by tests/unit/coupling/coupled_factor_test.cc against dense references.
 class CoupledFactor {
  public:

@@ -61,8 +61,8 @@ class CholmodAnalysis {
     common_.supernodal = CHOLMOD_SUPERNODAL;
     common_.print = 0;
     common_.error_handler = nullptr;
-    // The better of two: minimum degree for small tissue, CHOLMOD's own nested dissection for all else (on faces it
-    // saves a fifth of the operations of METIS's).
+    // The better of two: minimum degree for small tissue, CHOLMOD's own nested dissection for all
+    // else (on faces it saves a fifth of the operations of METIS's).
     common_.nmethods = 2;
     common_.method[0].ordering = CHOLMOD_AMD;
     common_.method[1].ordering = CHOLMOD_NESDIS;
@@ -92,7 +92,8 @@ class CholmodAnalysis {
     cholmod_sparse augmented_view = view_pattern(augmented);
     factor_ = cholmod_analyze_p(&augmented_view, order.data(), nullptr, 0, &common_);
     if (factor_ != nullptr && !pressures_are_last(static_cast<int>(s.cols()))) {
-      // Postordering may move pressures forward when the tissue falls into pieces; the order given is valid as it is.
+      // Postordering may move pressures forward when the tissue falls into pieces; the order given
+      // is valid as it is.
       cholmod_free_factor(&factor_, &common_);
       common_.postorder = 0;
       factor_ = cholmod_analyze_p(&augmented_view, order.data(), nullptr, 0, &common_);
@@ -134,8 +135,8 @@ class CholmodAnalysis {
   }
 
  private:
-  /// Nested dissection bisects with METIS, which draws random numbers: see thread_random.h. Where it finds those of the
-  /// whole process alone, orderings take turns.
+  /// Nested dissection bisects with METIS, which draws random numbers: see thread_random.h. Where
+  /// it finds those of the whole process alone, orderings take turns.
   cholmod_factor* order_alone(cholmod_sparse& pattern) {
     static std::mutex one_at_a_time;
     std::unique_lock turn(one_at_a_time, std::defer_lock);

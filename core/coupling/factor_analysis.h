@@ -14,18 +14,18 @@ namespace lipofill::coupling {
 ///     [ S  B^T ]   [ L11   0 ] [ L11^T  L21^T ]
 ///     [ B   0  ] = [ L21   I ] [   0     -C   ],      C = L21 L21^T = B S^-1 B^T
 ///
-/// with the degrees of freedom in a fill-reducing order and the pressures last: CHOLMOD's supernodal analysis, cut
-/// where the pressures begin. Immutable, made once a model and plan, and shared by all simulations of it. Checked by
-/// tests/unit/coupling/coupled_factor_test.cc.
+/// with the degrees of freedom in a fill-reducing order and the pressures last: CHOLMOD's
+/// supernodal analysis, cut where the pressures begin. Immutable, made once a model and plan, and
+/// shared by all simulations of it. Checked by tests/unit/coupling/coupled_factor_test.cc.
 class FactorAnalysis {
  public:
-  /// Columns of L that share their rows below the diagonal: a dense panel (n_rows, n_columns), column-major, its first
-  /// n_columns rows the triangle on the diagonal.
+  /// Columns of L that share their rows below the diagonal: a dense panel (n_rows, n_columns),
+  /// column-major, its first n_columns rows the triangle on the diagonal.
   struct Supernode {
     int first_column = 0;
     int n_columns = 0;
-    int n_rows = 0;           ///< with those of the triangle
-    int n_tissue_rows = 0;    ///< of them degrees of freedom; the rest are pressures
+    int n_rows = 0;           ///< the triangle's are counted too
+    int n_tissue_rows = 0;    ///< so many are degrees of freedom; the rest are pressures
     std::int64_t rows = 0;    ///< first of its rows in rows()
     std::int64_t values = 0;  ///< first of its values
   };

@@ -9,9 +9,9 @@ namespace lipofill::coupling {
 namespace {
 
 constexpr int kMaxIterations = 60;
-/// An edge of hardly any flow between thick and thin cells may turn round in every iteration; one that has turned so
-/// often goes on in its direction. Its flow is then too small to matter, or the volume of a cell turns negative and the step
-/// is refused.
+/// An edge of hardly any flow between thick and thin cells may turn round in every iteration; one
+/// that has turned so often goes on in its direction. Its flow is then too small to matter, or the
+/// volume of a cell turns negative and the step is refused.
 constexpr int kMaxTurns = 2;
 constexpr int kUndampedIterations = 20;
 
@@ -21,7 +21,8 @@ constexpr double kRoundOff = 1e-10;
 
 constexpr int kMaxNewtonIterations = 60;
 constexpr int kMaxLineSearch = 30;
-/// While the thickness is still far from settled, pressures need not be better than this share of its change.
+/// While the thickness is still far from settled, pressures need not be better than this share of
+/// its change.
 constexpr double kEarlyShare = 1e-3;
 constexpr double kEarlyTolerance = 1e-6;
 /// Share of the allowed mismatch that conjugate gradients may leave.

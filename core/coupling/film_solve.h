@@ -16,24 +16,26 @@ struct FilmSolution {
   std::vector<Eigen::VectorXd> flux;  ///< a film [m3/s]
   int iterations = 0;
   bool converged = false;
-  double change = 0.0;  ///< of the volume in the last iteration, relative to the fullest cell
+  double change = 0.0;  ///< the last iteration changed the volume so much, relative to the fullest cell
 };
 
 /// Tolerance of a film step, relative to the volume of the fullest cell. A solution with a negative
 /// volume is solved on to the tolerances of this type's own.
 struct FilmTolerance {
-  double change = 1e-10;    ///< of the volume, from one iteration on the thickness to the next
-  double mismatch = 1e-11;  ///< of gap and volume in a cell
+  double change = 1e-10;    ///< bounds how the volume changes from one iteration on the thickness to the next
+  double mismatch = 1e-11;  ///< bounds how gap and volume of a cell differ
 };
 
-/// Solves the film's step with the mobility at the new thickness: Picard iteration on the thickness, and in each of its
-/// iterations the paper's eq. 9 (or 11) as the minimum of a convex function of the pressure,
+/// Solves the film's step with the mobility at the new thickness: Picard iteration on the
+/// thickness, and in each of its iterations the paper's eq. 9 (or 11) as the minimum of a convex
+/// function of the pressure,
 ///
 ///     g0 + C p - V'(p) = void >= 0,   p >= lowest,   void (p - lowest) = 0
 ///
-/// with g0 the gap at zero pressure and V' the film's volume by its fluxes (film_projection.h), by Newton's method with
-/// a line search; cells at the suction limit are held (a primal-dual active set). Linear films without a limit need one
-/// solve. Stable and positive at any step once converged.
+/// with g0 the gap at zero pressure and V' the film's volume by its fluxes (film_projection.h), by
+/// Newton's method with a line search; cells at the suction limit are held (a primal-dual active
+/// set). Linear films without a limit need one solve. Stable and positive at any step once
+/// converged.
 /// Checked by tests/unit/coupling/film_solve_test.cc and tests/verification/film/.
 class FilmSolver {
  public:
@@ -42,13 +44,14 @@ class FilmSolver {
   PressureSolver& pressure_solver() { return solver_; }
   const PressureSolver& pressure_solver() const { return solver_; }
 
-  /// @param lowest    the suction limit of each cell [Pa] (n), minus infinity: none; empty: none anywhere
+  /// @param lowest    the suction limit of each cell [Pa] (n), minus infinity: none; empty: none
+  ///                  anywhere
   /// @param solution  pressure, volume and flux to start from; becomes the solution
   void solve(const Eigen::VectorXd& gap_without_pressure, const Eigen::VectorXd& lowest, FilmTolerance tolerance,
              FilmSolution& solution);
 
-  /// Takes the mobility that solves of many cells are preconditioned with from the volumes and fluxes of a state, as
-  /// the values of dt J of each film.
+  /// Takes the mobility that solves of many cells are preconditioned with from the volumes and
+  /// fluxes of a state, as the values of dt J of each film.
   void measure_mobility(const FilmSolution& at, std::vector<Eigen::VectorXd>& mobility);
 
  private:
@@ -72,7 +75,7 @@ class FilmSolver {
   bool is_linear_ = true;
   std::vector<char> held_;
   std::vector<Eigen::VectorXd> direction_;  ///< flux whose sign tells where each edge is upwind
-  std::vector<Eigen::VectorXi> turns_;      ///< of that, in the step under way
+  std::vector<Eigen::VectorXi> turns_;      ///< count how often that sign turned in the step under way
   Eigen::VectorXd guess_;                   ///< volume whose thickness the mobility has
   Eigen::VectorXd moved_;                   ///< C p
   Eigen::VectorXd residual_;                ///< r = V' - g0 - C p

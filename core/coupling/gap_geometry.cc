@@ -136,7 +136,7 @@ class Builder {
   int n_pieces_ = 0;
   int cell_ = -1;                                     ///< the cell under way
   std::vector<Place> places_;                         ///< those of the walls, cell by cell
-  std::unordered_map<int, int> wall_place_of_place_;  ///< of the cell under way
+  std::unordered_map<int, int> wall_place_of_place_;  ///< serves the cell under way
 };
 
 }  // namespace

@@ -21,14 +21,15 @@ struct WallNodes {
 
 /// The constant part of the gaps over a film's cells: the places of its pieces on the tissue's
 /// quadrilaterals, and the places of their derivatives in the pattern. A piece is the part of a
-/// quadrilateral that a cell covers; where an outline cuts it, its Gauss points have weights of their own.
+/// quadrilateral that a cell covers; where an outline cuts it, its Gauss points have weights of
+/// their own.
 struct GapGeometry {
   /// kLanes pieces side by side; a lane that is left over has no cell.
   struct Batch {
     Lanes s[2], t[2];                        ///< Gauss points in the quadrilateral
     Lanes weight[4];                         ///< s fastest
     int outer[4][kLanes], inner[4][kLanes];  ///< nodes of the quadrilateral
-    int wall_place[4][kLanes];               ///< in `wall_places`, by corner
+    int wall_place[4][kLanes];               ///< each corner has its place in `wall_places`
     int cell[kLanes];                        ///< -1: none
   };
   /// A place of the walls under a cell, and where its six values of B are, -1: fixed.
@@ -45,7 +46,7 @@ struct GapGeometry {
   std::vector<Batch> batches;
   std::vector<WallPlace> wall_places;
   std::vector<Vertex> vertices;
-  Eigen::SparseMatrix<double> pattern;  ///< of B (n_cells, n_dofs), zeros
+  Eigen::SparseMatrix<double> pattern;  ///< holds zeros where B has entries (n_cells, n_dofs)
 };
 
 /// @param pieces  of the cells on the tissue's quadrilaterals, cell by cell

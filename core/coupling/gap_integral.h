@@ -4,12 +4,12 @@
 
 namespace lipofill::coupling {
 
-/// A piece of the gap between two bilinear walls, T = double, or Lanes of them. Corners as those of the quadrilateral
-/// it lies in: (s, t) = (0, 0), (1, 0), (1, 1), (0, 1).
+/// A piece of the gap between two bilinear walls, T = double, or Lanes of them. Corners as those of
+/// the quadrilateral it lies in: (s, t) = (0, 0), (1, 0), (1, 1), (0, 1).
 template <typename T>
 struct GapPiece {
   Vector3<T> middle[4];    ///< half-way between the walls [m]
-  Vector3<T> distance[4];  ///< from the inner to the outer wall [m]
+  Vector3<T> distance[4];  ///< it points from the inner to the outer wall [m]
   T s[2], t[2];            ///< places of the Gauss points
   T weight[4];             ///< of the Gauss points, s fastest
 };
@@ -25,15 +25,16 @@ struct GapGradient {
 ///
 ///     V = int det(dX/ds, dX/dt, d) ds dt du = int [a x b + (a' x b')/12] . d ds dt,     X = middle + u d, |u| < 1/2
 ///
-/// a, b the tangents of the middle along s and t, a', b' those of d: exact by 2 x 2 points. Where both walls touch,
-/// d = 0, volume and by_middle are exactly 0. Weights of a piece that an outline cuts come from geometry::fit_gauss_shares.
+/// a, b the tangents of the middle along s and t, a', b' those of d: exact by 2 x 2 points. Where
+/// both walls touch, d = 0, volume and by_middle are exactly 0. Weights of a piece that an outline
+/// cuts come from geometry::fit_gauss_shares.
 template <bool kWithGradient, typename T>
 LIPOFILL_INLINE T integrate_piece(const GapPiece<T>& piece, GapGradient<T>* gradient) {
   using Vector = Vector3<T>;
   const auto& m = piece.middle;
   const auto& d = piece.distance;
-  const Vector m_along_s[2] = {m[1] - m[0], m[2] - m[3]};  // at t = 0, 1
-  const Vector m_along_t[2] = {m[3] - m[0], m[2] - m[1]};  // at s = 0, 1
+  const Vector m_along_s[2] = {m[1] - m[0], m[2] - m[3]};  // holds at t = 0, 1
+  const Vector m_along_t[2] = {m[3] - m[0], m[2] - m[1]};  // holds at s = 0, 1
   const Vector d_along_s[2] = {d[1] - d[0], d[2] - d[3]};
   const Vector d_along_t[2] = {d[3] - d[0], d[2] - d[1]};
   const T one = T{} + 1.0;

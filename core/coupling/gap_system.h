@@ -8,7 +8,8 @@
 
 namespace lipofill::coupling {
 
-/// The gaps of several films on one tissue, their cells one film after the other. Evaluating allocates nothing.
+/// The gaps of several films on one tissue, their cells one film after the other. Evaluating
+/// allocates nothing.
 class GapSystem {
  public:
   explicit GapSystem(std::vector<GapVolume> films, int n_dofs);

@@ -8,8 +8,9 @@
 
 namespace lipofill::coupling {
 
-/// Walls on tissue whose C is known by its product with a vector only, a solve with the tissue's factor each, beside
-/// walls of their own, C = diag(c): conjugate gradients preconditioned by the sparse LDL^T of
+/// Walls on tissue whose C is known by its product with a vector only, a solve with the tissue's
+/// factor each, beside walls of their own, C = diag(c): conjugate gradients preconditioned by the
+/// sparse LDL^T of
 ///
 ///     M = dt J + diag(C 1)
 ///

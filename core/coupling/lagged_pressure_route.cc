@@ -33,7 +33,7 @@ void LaggedPressureRoute::renew_preconditioner(const PressureSystem& system,
     j0.coeffs() = mobility[f];
     for (int column = 0; column < j0.outerSize(); ++column) {
       for (Eigen::SparseMatrix<double>::InnerIterator it(j0, column); it; ++it) {
-        if (it.row() < column) continue;  // of the factor the lower triangle is used
+        if (it.row() < column) continue;  // the factor uses its lower triangle
         factor_(offset + it.row(), offset + column) += static_cast<float>(scale_ * it.value());
       }
     }

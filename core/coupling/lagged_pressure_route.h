@@ -10,7 +10,8 @@
 
 namespace lipofill::coupling {
 
-/// Many cells on walls that move one another: conjugate gradients preconditioned by the Cholesky factor, in float32, of
+/// Many cells on walls that move one another: conjugate gradients preconditioned by the Cholesky
+/// factor, in float32, of
 ///
 ///     M = J0 + C = L L^T
 ///
@@ -18,9 +19,10 @@ namespace lipofill::coupling {
 ///
 ///     C z = r - J0 z
 ///
-/// so that an iteration passes over the factor only and not over C, and what it moves is exact to float32. Where cells
-/// are held, z is not M^-1 r in all cells, and C d is a product with C. Where conjugate gradients do not converge, the
-/// Cholesky factor of dt J + C (dense_pressure_route.h) serves, and that is counted.
+/// so that an iteration passes over the factor only and not over C, and what it moves is exact to
+/// float32. Where cells are held, z is not M^-1 r in all cells, and C d is a product with C. Where
+/// conjugate gradients do not converge, the Cholesky factor of dt J + C (dense_pressure_route.h)
+/// serves, and that is counted.
 ///
 /// Checked by tests/unit/coupling/pressure_routes_test.cc and pressure_solver_test.cc.
 class LaggedPressureRoute : public PressureRoute {

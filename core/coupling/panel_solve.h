@@ -6,14 +6,15 @@
 
 namespace lipofill::coupling {
 
-/// Triangular solves with the columns of a factor, in the time it takes to read it: each column is read once, four side
-/// by side, while the next four are on their way. BLAS, which starts anew in every small panel, takes two to three
-/// times as long.
+/// Triangular solves with the columns of a factor, in the time it takes to read it: each column is
+/// read once, four side by side, while the next four are on their way. BLAS, which starts anew in
+/// every small panel, takes two to three times as long.
 ///
-/// A panel is (n_rows, n_columns), column-major, n_rows >= n_columns: its first n_columns rows are the lower triangle
-/// L1, with the reciprocals of its diagonal in place of the diagonal (invert_diagonal), the rows below it L2. Columns
-/// are read in whole cache lines, so that kPadding finite values must follow the last one, and kPadding values the
-/// n_rows of t. Sums in a fixed order. Checked by tests/unit/coupling/panel_solve_test.cc.
+/// A panel is (n_rows, n_columns), column-major, n_rows >= n_columns: its first n_columns rows are
+/// the lower triangle L1, with the reciprocals of its diagonal in place of the diagonal
+/// (invert_diagonal), the rows below it L2. Columns are read in whole cache lines, so that kPadding
+/// finite values must follow the last one, and kPadding values the n_rows of t. Sums in a fixed
+/// order. Checked by tests/unit/coupling/panel_solve_test.cc.
 template <typename Scalar>
 class PanelSolve {
  public:
@@ -63,7 +64,8 @@ class PanelSolve {
 
  private:
   static constexpr int kSideBySide = 4;
-  /// Values on their way at least, of this panel and of the next ones: what memory delivers while it is asked for more.
+  /// Values on their way at least, of this panel and of the next ones: what memory delivers while
+  /// it is asked for more.
   static constexpr std::int64_t kAhead = 8192 / sizeof(Scalar);
   using Line = Eigen::Array<Scalar, kPadding, 1>;
 

@@ -10,8 +10,8 @@ namespace lipofill::coupling {
 
 /// Counts since the start.
 struct PressureCounts {
-  long iterative_solves = 0;  ///< by conjugate gradients
-  long iterations = 0;        ///< of those
+  long iterative_solves = 0;  ///< conjugate gradients made them
+  long iterations = 0;        ///< those took so many
   long fallbacks = 0;         ///< times that they did not converge
 };
 
@@ -19,13 +19,14 @@ struct PressureCounts {
 ///
 ///     (dt J + C) dp = r,   dp = 0 in the cells that are held
 ///
-/// for one kind of walls: diagonal_pressure_route.h, dense_pressure_route.h, lagged_pressure_route.h and
-/// implicit_pressure_route.h. PressureSolver chooses.
+/// for one kind of walls: diagonal_pressure_route.h, dense_pressure_route.h,
+/// lagged_pressure_route.h and implicit_pressure_route.h. PressureSolver chooses.
 class PressureRoute {
  public:
   virtual ~PressureRoute() = default;
 
-  /// Takes the walls of the solves to come, always of one kind; what it points to must outlive them.
+  /// Takes the walls of the solves to come, always of one kind; what it points to must outlive
+  /// them.
   virtual void set_walls(const WallCompliance& walls) = 0;
   /// Computes C p.
   virtual void multiply_walls(const Eigen::VectorXd& p, Eigen::VectorXd& product) = 0;

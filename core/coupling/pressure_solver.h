@@ -12,12 +12,13 @@
 
 namespace lipofill::coupling {
 
-/// Solves (dt J + C) dp = r in the cells of all films (pressure_system.h), by the route that is made for their walls,
-/// chosen when they are first set. By what C is:
+/// Solves (dt J + C) dp = r in the cells of all films (pressure_system.h), by the route that is
+/// made for their walls, chosen when they are first set. By what C is:
 ///
 /// - diagonal: sparse LDL^T (diagonal_pressure_route.h);
 /// - dense, up to kMaxDirectCells: Cholesky (dense_pressure_route.h);
-/// - dense, more cells: conjugate gradients with a factor of an earlier state (lagged_pressure_route.h);
+/// - dense, more cells: conjugate gradients with a factor of an earlier state
+///   (lagged_pressure_route.h);
 /// - implicit: conjugate gradients with the factor of a diagonal C (implicit_pressure_route.h).
 ///
 /// Checked by tests/unit/coupling/film_solve_test.cc and pressure_solver_test.cc.
@@ -27,7 +28,8 @@ class PressureSolver {
 
   explicit PressureSolver(std::vector<film::FilmProjection*> films);
 
-  /// Takes the walls of the solves to come, always of one kind; what it points to must outlive them.
+  /// Takes the walls of the solves to come, always of one kind; what it points to must outlive
+  /// them.
   void set_walls(const WallCompliance& walls);
   /// Computes C p.
   void multiply_walls(const Eigen::VectorXd& p, Eigen::VectorXd& product) { route_->multiply_walls(p, product); }
@@ -52,7 +54,8 @@ class PressureSolver {
   bool solve(const Eigen::VectorXd& p, const std::vector<char>& held, const Eigen::VectorXd& r, double tolerance,
              Eigen::VectorXd& dp, Eigen::VectorXd& moved);
 
-  /// Counts since the start: solves by conjugate gradients, their iterations, and how often they did not converge.
+  /// Counts since the start: solves by conjugate gradients, their iterations, and how often they
+  /// did not converge.
   long iterative_solves() const { return counts().iterative_solves; }
   long iterations() const { return counts().iterations; }
   long fallbacks() const { return counts().fallbacks; }

@@ -12,9 +12,10 @@ namespace lipofill::coupling {
 ///
 ///     dt J = diag(dt J_1, dt J_2, ...)      -dV'/dp of each film at the pressures of the solve [m3/Pa]
 ///
-/// with the cells that hold their pressure, dp = 0, and the gauge cells: components of a film whose walls are rigid
-/// have a pressure that is known up to a constant only, so that it stays as it is in the component's first cell, and
-/// what is injected there must balance. Doubling a gauge cell's diagonal does that.
+/// with the cells that hold their pressure, dp = 0, and the gauge cells: components of a film whose
+/// walls are rigid have a pressure that is known up to a constant only, so that it stays as it is
+/// in the component's first cell, and what is injected there must balance. Doubling a gauge cell's
+/// diagonal does that.
 class PressureSystem {
  public:
   explicit PressureSystem(std::vector<film::FilmProjection*> films);

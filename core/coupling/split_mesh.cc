@@ -29,7 +29,8 @@ void number_nodes(const geometry::LayeredGrid& grid, const std::vector<std::vect
   }
 }
 
-/// Hexahedra between `level` and `level + 1`: their skin side takes the inner nodes of the level above them, and so on.
+/// Hexahedra between `level` and `level + 1`: their skin side takes the inner nodes of the level
+/// above them, and so on.
 void add_hexahedra(const geometry::LayeredGrid& grid, int level, int material, bool stacked, SplitMesh& split) {
   for (int j = 0; j < grid.n_eta; ++j) {
     for (int i = 0; i < grid.n_xi; ++i) {

@@ -12,8 +12,8 @@ namespace lipofill::coupling {
 
 namespace {
 
-/// Supernodes with more than this share of all pressures are squared together, so many columns at a time: one by one
-/// the additions would cost more than the multiplications.
+/// Supernodes with more than this share of all pressures are squared together, so many columns at a
+/// time: one by one the additions would cost more than the multiplications.
 constexpr double kGatheredShare = 0.4;
 constexpr int kGatheredColumns = 256;
 
@@ -86,7 +86,8 @@ bool SupernodalFactor<Scalar>::factorise(const Sparse& s, const Sparse& b) {
   return true;
 }
 
-/// Panel of `target` <- panel - L[begin.., :] L[begin..end, :]^T of the source, row by row where they belong.
+/// Panel of `target` <- panel - L[begin.., :] L[begin..end, :]^T of the source, row by row where
+/// they belong.
 template <typename Scalar>
 void SupernodalFactor<Scalar>::subtract_update(const Supernode& target, const FactorAnalysis::Update& update) {
   const Supernode& source = analysis_->supernodes()[update.source];
@@ -156,7 +157,8 @@ void SupernodalFactor<Scalar>::add_square(const Supernode& node) {
   }
 }
 
-/// Columns [first, first + count) of a supernode's pressure rows, over all cells, into gathered_ from `at` on.
+/// Columns [first, first + count) of a supernode's pressure rows, over all cells, into gathered_
+/// from `at` on.
 template <typename Scalar>
 void SupernodalFactor<Scalar>::gather_pressure_rows(const Supernode& node, int first, int count, int at) {
   const int n = node.n_rows - node.n_tissue_rows;

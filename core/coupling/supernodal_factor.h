@@ -9,12 +9,12 @@
 
 namespace lipofill::coupling {
 
-/// L11, L21 and C of FactorAnalysis in float32 or float64: left-looking, supernode by supernode, on BLAS. The matrix is
-/// scaled to a unit diagonal, so that units and contrasts of stiffness cost no digits. C is a sum of squares, without
-/// cancellation.
+/// L11, L21 and C of FactorAnalysis in float32 or float64: left-looking, supernode by supernode, on
+/// BLAS. The matrix is scaled to a unit diagonal, so that units and contrasts of stiffness cost no
+/// digits. C is a sum of squares, without cancellation.
 ///
-/// Sums in a fixed order on the calling thread. Checked by tests/unit/coupling/coupled_factor_test.cc against dense
-/// algebra and CHOLMOD.
+/// Sums in a fixed order on the calling thread. Checked by
+/// tests/unit/coupling/coupled_factor_test.cc against dense algebra and CHOLMOD.
 template <typename Scalar>
 class SupernodalFactor {
  public:
@@ -32,7 +32,8 @@ class SupernodalFactor {
 
   /// Half a solve: leaves y = L11^-1 r for the other half and returns B S^-1 r = L21 y.
   void solve_forward(const Eigen::VectorXd& r, Eigen::VectorXd& gap_response);
-  /// The other half: x = S^-1 (r + B^T p) = L11^-T (y + L21^T p), with the y that solve_forward left.
+  /// The other half: x = S^-1 (r + B^T p) = L11^-T (y + L21^T p), with the y that solve_forward
+  /// left.
   void solve_backward(const Eigen::VectorXd& pressure, Eigen::VectorXd& x);
 
  private:
@@ -46,13 +47,13 @@ class SupernodalFactor {
 
   std::shared_ptr<const FactorAnalysis> analysis_;
   std::vector<Scalar> values_;
-  std::vector<Scalar> buffer_;  ///< of one update, or of one supernode's rows
-  std::vector<Scalar> square_;  ///< of one supernode, of its pressure rows
+  std::vector<Scalar> buffer_;  ///< holds one update, or one supernode's rows
+  std::vector<Scalar> square_;  ///< holds one supernode's product of its pressure rows
   Matrix gathered_;             ///< pressure rows of several supernodes (n_cells, kGatheredColumns)
   Matrix sum_;                  ///< C, scaled, lower triangle
-  std::vector<int> position_;   ///< of each row of L in the supernode under way
+  std::vector<int> position_;   ///< the supernode under way has each row of L there
   std::vector<int> relative_;   ///< positions of an update's rows
-  Eigen::VectorXd scale_;       ///< of each degree of freedom
+  Eigen::VectorXd scale_;       ///< every degree of freedom has one
   double pressure_scale_ = 1.0;
   Vector forward_;  ///< y, and below it L21 y
   Vector solution_;

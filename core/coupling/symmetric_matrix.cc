@@ -22,7 +22,8 @@ Doubles load(const float* from) {
   return __builtin_convertvector(v, Doubles);
 }
 
-/// y[r] += a[r] x_j and y_j += a[r] x[r] for the rows below the diagonal of kColumns columns `a` from `first` on.
+/// y[r] += a[r] x_j and y_j += a[r] x[r] for the rows below the diagonal of kColumns columns `a`
+/// from `first` on.
 void add_columns(const float* const (&a)[kColumns], Eigen::Index first, Eigen::Index n, const double* x, double* y,
                  const double* x_of_column, double* y_of_column) {
   Doubles sum[kColumns] = {};

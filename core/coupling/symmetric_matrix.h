@@ -4,9 +4,9 @@
 
 namespace lipofill::coupling {
 
-/// A symmetric matrix stored as float32 and multiplied in float64: products of many cells are bound by memory, so half
-/// the bytes, read once for both triangles, are four times the speed. Sums in a fixed order. Checked by
-/// tests/unit/coupling/symmetric_matrix_test.cc.
+/// A symmetric matrix stored as float32 and multiplied in float64: products of many cells are bound
+/// by memory, so half the bytes, read once for both triangles, are four times the speed. Sums in a
+/// fixed order. Checked by tests/unit/coupling/symmetric_matrix_test.cc.
 class SymmetricMatrix {
  public:
   /// Takes the lower triangle of `matrix` (n, n), rounded.

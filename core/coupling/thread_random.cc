@@ -6,7 +6,8 @@
 
 namespace {
 
-/// The C library's own algorithm and state, one for each thread, seeded with 1 as the standard has it.
+/// The C library's own algorithm and state, one for each thread, seeded with 1 as the standard has
+/// it.
 class Generator {
  public:
   Generator() { ::initstate_r(1, state_, sizeof state_, &data_); }

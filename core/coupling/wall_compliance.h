@@ -19,7 +19,7 @@ struct WallCompliance {
   /// The diagonal (n). On the implicit route the entries of cells on tissue are their C 1, for the
   /// preconditioner alone.
   Eigen::VectorXd diagonal;
-  CoupledFactor* tissue = nullptr;                 ///< of the implicit route, or null
+  CoupledFactor* tissue = nullptr;                 ///< the implicit route has one; null for others
   const std::vector<int>* tissue_cells = nullptr;  ///< cell of each row of the factor's B
 };
 

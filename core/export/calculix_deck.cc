@@ -105,7 +105,8 @@ constexpr char kHeading[] =
     "** Units: mm, N, MPa, tonne, s. Made for CalculiX; solve with: ccx NAME, the file being NAME.inp.\n"
     "** Nodes are doubled where a film opens. Rest shape, static: no inertia, no damping.\n";
 
-/// A comment on forces of the simulation that the deck leaves out, for whoever compares; empty when there are none.
+/// A comment on forces of the simulation that the deck leaves out, for whoever compares; empty when
+/// there are none.
 std::string name_what_is_left_out(const model::FaceModel& model, const plan::SimulationSpec& spec) {
   std::vector<std::string> left_out;
   if (!spec.ligaments.empty()) left_out.push_back("ligaments");
@@ -126,7 +127,7 @@ std::string name_what_is_left_out(const model::FaceModel& model, const plan::Sim
 struct CalculixDeck::Content {
   mechanics::HeldMesh held;
   int hexahedra_a_layer_level = 0;
-  std::vector<int> first_level;  ///< of each layer, and one past the last
+  std::vector<int> first_level;  ///< each layer begins there; one more ends the last
   std::vector<model::TissueLayerSpec> layers;
   std::vector<FilmWalls> films;
   std::vector<Attachment> attachments;

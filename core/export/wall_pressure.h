@@ -16,14 +16,14 @@ struct WallPressure {
 };
 
 /// Returns one pressure for every quadrilateral that cells of a film cover, wholly or in part: that
-/// of the cells weighted by the share of the quadrilateral, in the chart, that each covers inside its zone's outline.
-/// What no cell covers counts with zero pressure, so that sum_q p_q A_q = sum_i p_i A_i with A areas of the chart.
+/// of the cells weighted by the share of the quadrilateral, in the chart, that each covers inside
+/// its zone's outline. What no cell covers counts with zero pressure, so that sum_q p_q A_q = sum_i
+/// p_i A_i with A areas of the chart.
 /// @param pieces  of the film's cells on the tissue's quadrilaterals
 /// @param pressure  of the cells [Pa] (n_cells)
 /// @return ascending in j, then i.
 /// Checked by tests/unit/export/calculix_deck_test.cc.
 std::vector<WallPressure> spread_over_wall(const geometry::LayeredGrid& tissue,
-                                           const std::vector<film::CellPiece>& pieces,
-                                           const Eigen::VectorXd& pressure);
+                                           const std::vector<film::CellPiece>& pieces, const Eigen::VectorXd& pressure);
 
 }  // namespace lipofill::exporting

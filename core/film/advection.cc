@@ -21,9 +21,10 @@ struct Basis {
 
 /// Velocity anywhere in the chart, in index coordinates: x = i + fraction, y = j + fraction.
 ///
-/// The tangent vectors are interpolated from the sides of cells, g1 from those along xi and g2 from those along eta: a
-/// field without jumps, second order also on the edges. The bilinear tangents of a cell turn and stretch from one cell
-/// to the next, and a velocity carried over an edge would lose a little in every step, however short.
+/// The tangent vectors are interpolated from the sides of cells, g1 from those along xi and g2 from
+/// those along eta: a field without jumps, second order also on the edges. The bilinear tangents of
+/// a cell turn and stretch from one cell to the next, and a velocity carried over an edge would
+/// lose a little in every step, however short.
 class VelocityField {
  public:
   VelocityField(const FilmGrid& grid, const FilmMetric& metric, const std::vector<double>& flux_xi,

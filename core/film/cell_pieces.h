@@ -13,13 +13,14 @@ struct CellPiece {
   int quad_i = 0;  ///< of the finer grid
   int quad_j = 0;
   geometry::ChartBox box;
-  /// What counts of the four points of the 2 x 2 Gauss rule on the box, s fastest: 1 each where the piece lies inside
-  /// the zone's outline, less where the outline cuts it (geometry::fit_gauss_shares).
+  /// What counts of the four points of the 2 x 2 Gauss rule on the box, s fastest: 1 each where the
+  /// piece lies inside the zone's outline, less where the outline cuts it
+  /// (geometry::fit_gauss_shares).
   std::array<double, 4> share = {1.0, 1.0, 1.0, 1.0};
 };
 
-/// Cuts the slots of cells and of their fragments at the lines of a grid of n_xi x n_eta quadrilaterals, cell by cell,
-/// every share 1.
+/// Cuts the slots of cells and of their fragments at the lines of a grid of n_xi x n_eta
+/// quadrilaterals, cell by cell, every share 1.
 std::vector<CellPiece> cut_cells(const FilmGrid& film, int n_xi, int n_eta);
 
 }  // namespace lipofill::film

@@ -7,8 +7,8 @@
 namespace lipofill::film {
 namespace {
 
-/// The fat of a quarter that the outline cuts is as fast as the flux demands; below this share the estimate is kept
-/// from growing without bound.
+/// The fat of a quarter that the outline cuts is as fast as the flux demands; below this share the
+/// estimate is kept from growing without bound.
 constexpr double kLeastShareOfInertia = 0.1;
 
 QuadrantForm unit_form(const QuadrantMetric& g, const QuadrantEdges& edges) {

@@ -23,8 +23,8 @@ Eigen::VectorXd compute_edge_difference(const FilmGrid& grid, const Values& p);
 void compute_outflow(const FilmGrid& grid, const Values& flux, Eigen::VectorXd& outflow);
 Eigen::VectorXd compute_outflow(const FilmGrid& grid, const Values& flux);
 
-/// Coefficients of the quadratic form d^T w d of one quadrant in the differences across its xi-edge and eta-edge; zero
-/// where the edge is sealed.
+/// Coefficients of the quadratic form d^T w d of one quadrant in the differences across its xi-edge
+/// and eta-edge; zero where the edge is sealed.
 struct QuadrantForm {
   double w11 = 0.0;
   double w12 = 0.0;
@@ -45,7 +45,8 @@ void add_flux_of_forms(const FilmGrid& grid, const QuadrantForms& forms, const E
                        Eigen::Ref<Eigen::VectorXd> flux);
 Eigen::VectorXd apply_forms(const FilmGrid& grid, const QuadrantForms& forms, const Eigen::VectorXd& difference);
 
-/// Flux that differences across edges drive, W d, with the contravariant metric and a conductance an edge:
+/// Flux that differences across edges drive, W d, with the contravariant metric and a conductance
+/// an edge:
 ///
 ///     d^T W d = sum over quadrants of 1/4 sqrt(g) [k1 g^11 d1^2 + 2 sqrt(k1 k2) g^12 d1 d2 + k2 g^22 d2^2]
 ///
@@ -57,8 +58,10 @@ Eigen::VectorXd apply_conductance(const FilmGrid& grid, const FilmMetric& metric
                                   const Eigen::VectorXd& difference);
 
 /// The paper's J (eq. 3) with friction in it: J = G^T W G  [m3/(Pa s)]. Symmetric, positive semi-definite, constants of
-/// each connected component in its null space, nine points a row. Second order on smooth charts, orthogonal or not.
-/// Checked by tests/unit/film/edge_operators_test.cc and tests/verification/film/manufactured_*_test.cc.
+/// each connected component in its null space, nine points a row. Second order on smooth charts,
+/// orthogonal or not.
+/// Checked by tests/unit/film/edge_operators_test.cc and
+/// tests/verification/film/manufactured_*_test.cc.
 class PressureOperator {
  public:
   explicit PressureOperator(const FilmGrid& grid);
@@ -77,9 +80,9 @@ class PressureOperator {
   /// sealed side is zero and goes to the cell's own diagonal value.
   struct CellSlots {
     std::int32_t diagonal;
-    std::int32_t neighbour_diagonal[4];     ///< by Side
+    std::int32_t neighbour_diagonal[4];     ///< Side is the index
     std::int32_t with_neighbour[4][2];      ///< (cell, neighbour) and (neighbour, cell)
-    std::int32_t between_neighbours[4][2];  ///< by quadrant, the two neighbours that it touches
+    std::int32_t between_neighbours[4][2];  ///< a quadrant has the two neighbours that it touches
   };
   struct LeakSlots {
     std::int32_t left, right, left_right, right_left;
@@ -93,10 +96,10 @@ class PressureOperator {
   Eigen::SparseMatrix<double> matrix_;
 };
 
-/// Forms of the kinetic metric M(1) of edge velocities: U^T M(w) U = sum over quadrants of 1/4 / sqrt(g) [w1 g_11 U1^2
-/// + 2 sqrt(w1 w2) g_12 U1 U2 + w2 g_22 U2^2], which is the integral of w |u|^2 over the film. U_e [m2/s] is the
-/// velocity normal to the edge times its length. scale_forms gives those of M(w). Symmetric positive definite where the
-/// weights are positive.
+/// Forms of the kinetic metric M(1) of edge velocities: U^T M(w) U = sum over quadrants of
+/// 1/4 / sqrt(g) [w1 g_11 U1^2 + 2 sqrt(w1 w2) g_12 U1 U2 + w2 g_22 U2^2], which is the integral of
+/// w |u|^2 over the film. U_e [m2/s] is the velocity normal to the edge times its length.
+/// scale_forms gives those of M(w). Symmetric positive definite where the weights are positive.
 void compute_unit_mass_forms(const FilmGrid& grid, const FilmMetric& metric, QuadrantForms& unit);
 
 /// Velocity vectors at cell centres from edge velocities [m/s] (3, n_cells).

@@ -12,8 +12,8 @@ namespace lipofill::film {
 /// Sides of a cell, and at the same time the order of `FilmGrid::edge_of_side`.
 enum Side { kLowXi = 0, kHighXi = 1, kLowEta = 2, kHighEta = 3 };
 
-/// An open edge between two cells; fat flows through it. Its positive direction is from `left` to `right`, along +xi or
-/// +eta.
+/// An open edge between two cells; fat flows through it. Its positive direction is from `left` to
+/// `right`, along +xi or +eta.
 struct Edge {
   int left = 0;
   int right = 0;
@@ -31,16 +31,17 @@ struct LeakyWall {
 using SlotCover = std::array<double, 4>;
 inline constexpr SlotCover kWholeSlot = {1.0, 1.0, 1.0, 1.0};
 
-/// What a zone covers of a slot that is not its own cell, or too little to be one: it counts as part of the cell beside.
+/// What a zone covers of a slot that is not its own cell, or too little to be one: it counts as
+/// part of the cell beside.
 struct Fragment {
   int cell = 0;
   int slot = 0;
   SlotCover cover = kWholeSlot;
 };
 
-/// Topology of the staggered film grid: n_xi x n_eta slots over a box of the chart, of which those in a zone are cells.
-/// Pressure and volume live on cells, velocity on the open edges. Edges between two zones, or between a cell and no
-/// cell, are sealed walls and are not in the list.
+/// Topology of the staggered film grid: n_xi x n_eta slots over a box of the chart, of which those
+/// in a zone are cells. Pressure and volume live on cells, velocity on the open edges. Edges
+/// between two zones, or between a cell and no cell, are sealed walls and are not in the list.
 struct FilmGrid {
   geometry::ChartBox extent;
   int n_xi = 0;
@@ -76,8 +77,9 @@ struct SlotFragment {
   SlotCover cover = kWholeSlot;
 };
 
-/// Numbers cells and edges. `zone_of_slot`: (n_xi * n_eta), -1 where there is no film. Edges in `walls` are sealed, and
-/// so are those at which the fat of one of the cells ends before it. `cover_of_slot`: empty where every cell is whole.
+/// Numbers cells and edges. `zone_of_slot`: (n_xi * n_eta), -1 where there is no film. Edges in
+/// `walls` are sealed, and so are those at which the fat of one of the cells ends before it.
+/// `cover_of_slot`: empty where every cell is whole.
 /// Checked by tests/unit/film/edge_operators_test.cc.
 FilmGrid make_film_grid(const geometry::ChartBox& extent, int n_xi, int n_eta, const std::vector<int>& zone_of_slot,
                         const WalledSlots& walls = {}, const std::vector<SlotCover>& cover_of_slot = {},

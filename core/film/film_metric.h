@@ -8,8 +8,9 @@
 
 namespace lipofill::film {
 
-/// Covariant metric of the chart at a corner of a cell, in index coordinates (one cell is one unit): g_ab = g_a . g_b
-/// with g_1, g_2 the sides of the cell that meet there; sqrt_g = |g_1 x g_2| [m2].
+/// Covariant metric of the chart at a corner of a cell, in index coordinates (one cell is one
+/// unit): g_ab = g_a . g_b with g_1, g_2 the sides of the cell that meet there;
+/// sqrt_g = |g_1 x g_2| [m2].
 struct QuadrantMetric {
   double g11 = 0.0;
   double g12 = 0.0;
@@ -18,11 +19,12 @@ struct QuadrantMetric {
   double share = 1.0;  ///< of the quarter that lies inside the zone's outline
 };
 
-/// The film's mid-surface as it is now: the paper's distortion matrix, a quarter of a cell at a time.
+/// The film's mid-surface as it is now: the paper's distortion matrix, a quarter of a cell at a
+/// time.
 ///
-/// Quadrant q = s + 2 t of a cell is the quarter at corner (s, t); it touches the xi-edge on side s and the eta-edge on
-/// side t. Every operator of the film is a sum over quadrants, which makes it symmetric whatever the angle between xi
-/// and eta.
+/// Quadrant q = s + 2 t of a cell is the quarter at corner (s, t); it touches the xi-edge on side s
+/// and the eta-edge on side t. Every operator of the film is a sum over quadrants, which makes it
+/// symmetric whatever the angle between xi and eta.
 struct FilmMetric {
   std::vector<std::array<QuadrantMetric, 4>> quadrants;  ///< a cell
   /// [m2] (n_cells)  a = 1/4 sum of share sqrt_g, with the cell's fragments: exact on flat parallelograms and trapezia

@@ -32,8 +32,8 @@ struct FilmStepInput {
 ///     F  = k (p_l - p_r)                    through leaky walls
 ///     V' = V + injected + dt G^T F
 ///
-/// in flux form: what leaves a cell enters its neighbour, to the last bit but rounding. After the first step nothing is
-/// allocated. Checked by tests/unit/coupling/film_solve_test.cc.
+/// in flux form: what leaves a cell enters its neighbour, to the last bit but rounding. After the
+/// first step nothing is allocated. Checked by tests/unit/coupling/film_solve_test.cc.
 class FilmProjection {
  public:
   explicit FilmProjection(const FilmGrid& grid);
@@ -44,7 +44,8 @@ class FilmProjection {
   void begin_step();
   void begin_step(FilmStepInput input);
 
-  /// Takes edge thicknesses and with them mobilities from a guess of the new volume, upwind by a guess of the flux.
+  /// Takes edge thicknesses and with them mobilities from a guess of the new volume, upwind by a
+  /// guess of the flux.
   void set_thickness(const Values& volume_guess, const Values& flux_guess);
 
   /// True when V' is linear in p.
@@ -53,7 +54,8 @@ class FilmProjection {
   const Eigen::SparseMatrix<double>& linearise(const Values& pressure);
   /// The matrix of the last linearise, for its pattern.
   const Eigen::SparseMatrix<double>& pattern() const { return pressure_operator_.matrix(); }
-  /// F at a pressure, through the open edges and then the leaky walls [m3/s] (n_edges + n_leaky_walls).
+  /// F at a pressure, through the open edges and then the leaky walls [m3/s]
+  /// (n_edges + n_leaky_walls).
   void compute_flux(const Values& pressure, Eigen::VectorXd& flux);
   Eigen::VectorXd compute_flux(const Values& pressure);
   /// V' of a flux [m3] (n_cells).
@@ -75,7 +77,7 @@ class FilmProjection {
   PressureOperator pressure_operator_;
   FlowLaw law_;
   FilmStepInput input_;
-  Eigen::VectorXd thickness_;  ///< of the guess [m] (n_cells)
+  Eigen::VectorXd thickness_;  ///< the guess has this thickness [m] (n_cells)
   Eigen::VectorXd edge_thickness_;
   Eigen::VectorXd drive_;  ///< D, of the last call that needed it [Pa] (n_edges)
   Eigen::VectorXd leak_conductance_;

@@ -6,8 +6,8 @@
 namespace lipofill::film {
 namespace {
 
-/// Share of the Newtonian conductance that an unyielded quadrant has in the tangent. It steers Newton's iteration
-/// only, never the flux.
+/// Share of the Newtonian conductance that an unyielded quadrant has in the tangent. It steers
+/// Newton's iteration only, never the flux.
 constexpr double kLeastTangent = 1e-9;
 
 double quadratic(const QuadrantForm& w, double d1, double d2) {

@@ -9,7 +9,8 @@
 
 namespace lipofill::film {
 
-/// Flux through every open edge, F(D), as a function of what drives the fat across it, D = rho b . dX - G p [Pa].
+/// Flux through every open edge, F(D), as a function of what drives the fat across it, D = rho
+/// b . dX - G p [Pa].
 ///
 ///     F = W(k) D                                      Newtonian fat: linear, with inertia
 ///     F = f(|grad|) w D + W(h^3/(12 G dt)) (D - s)    other fat, a quadrant at a time
@@ -36,7 +37,8 @@ class FlowLaw {
   bool is_linear() const { return fat_.is_newtonian(); }
   /// Adds F(D) to `flux` (n_edges).
   void add_flux(const Eigen::VectorXd& drive, Eigen::Ref<Eigen::VectorXd> flux);
-  /// dF/dD as forms [m3/(Pa s)]. Where nothing flows it stays just above zero, so that a pressure follows.
+  /// dF/dD as forms [m3/(Pa s)]. Where nothing flows it stays just above zero, so that a pressure
+  /// follows.
   const QuadrantForms& linearise(const Eigen::VectorXd& drive);
 
  private:
@@ -58,7 +60,7 @@ class FlowLaw {
   Fat fat_;
   double dt_ = 0.0;
   QuadrantForms unit_;                              ///< W(1) of the step's metric
-  QuadrantForms linear_;                            ///< with inertia: W(k); else the elastic part
+  QuadrantForms linear_;                            ///< it holds W(k) where there is inertia, else the elastic part
   QuadrantForms reference_;                         ///< W(h^3/(12 K)), without inertia
   QuadrantForms tangent_;                           ///< without inertia
   std::vector<std::array<Quadrant, 4>> quadrants_;  ///< empty: with inertia

@@ -18,13 +18,14 @@ namespace lipofill::film {
 ///
 ///     [M(h (1 + 12 nu dt/h^2)) + dt nu (D^T (h/a) D + M(1) K^T (h/a_v) K M(1))] U' = M(h) U
 ///
-/// with D the net outflow of cells, K the circulation around vertices and M the kinetic metric of edge_operators.h:
-/// the matrix is a ViscousSystem. Sealed edges are free-slip side walls. First order in time, second in space on smooth charts, orthogonal or not.
+/// with D the net outflow of cells, K the circulation around vertices and M the kinetic metric of
+/// edge_operators.h: the matrix is a ViscousSystem. Sealed edges are free-slip side walls. First
+/// order in time, second in space on smooth charts, orthogonal or not.
 ///
-/// Solved by conjugate gradients, preconditioned by the diagonal, from what friction alone would leave, to 1e-13 in
-/// the norm of the inverse diagonal. With friction that is a few iterations; each is linear in the cells. After the
-/// first call nothing is allocated. Checked by tests/unit/film/motion_test.cc and
-/// tests/verification/film/manufactured_viscosity_test.cc.
+/// Solved by conjugate gradients, preconditioned by the diagonal, from what friction alone would
+/// leave, to 1e-13 in the norm of the inverse diagonal. With friction that is a few iterations;
+/// each is linear in the cells. After the first call nothing is allocated. Checked by
+/// tests/unit/film/motion_test.cc and tests/verification/film/manufactured_viscosity_test.cc.
 class ImplicitViscosity {
  public:
   explicit ImplicitViscosity(const FilmGrid& grid);

@@ -10,13 +10,15 @@
 
 namespace lipofill::film {
 
-/// The symmetric positive definite system of implicit viscosity on edge velocities U [m2/s] (viscosity.h),
+/// The symmetric positive definite system of implicit viscosity on edge velocities U [m2/s]
+/// (viscosity.h),
 ///
 ///     A = M(w) + D^T (s h/a) D + M(1) K^T (s h/a_v) K M(1)
 ///
-/// with D the net outflow of cells, K the circulation around inner vertices, M the kinetic metric of edge_operators.h,
-/// w [m] a weight of each edge and s = nu dt [m2]. It is never written down: a product goes over the cells and the
-/// inner vertices. Checked by tests/unit/film/viscous_system_test.cc.
+/// with D the net outflow of cells, K the circulation around inner vertices, M the kinetic metric
+/// of edge_operators.h, w [m] a weight of each edge and s = nu dt [m2]. It is never written down: a
+/// product goes over the cells and the inner vertices. Checked by
+/// tests/unit/film/viscous_system_test.cc.
 class ViscousSystem {
  public:
   explicit ViscousSystem(const FilmGrid& grid);

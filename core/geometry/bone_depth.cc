@@ -34,8 +34,8 @@ void for_neighbours(const LayeredGrid& grid, int i, int j, const Visit& visit) {
   if (j < grid.n_eta) visit(grid.surface_index(i, j + 1));
 }
 
-/// Makes every value that is not finite the mean of its neighbours. With one finite value at least the system is
-/// positive definite: the grid is connected.
+/// Makes every value that is not finite the mean of its neighbours. With one finite value at least
+/// the system is positive definite: the grid is connected.
 void fill_harmonically(const LayeredGrid& grid, Eigen::VectorXd& values) {
   std::vector<int> unknown(values.size(), -1);
   int n_unknown = 0;

@@ -11,7 +11,7 @@ namespace lipofill::geometry {
 /// Distance from the skin to the bone.
 struct BoneDepth {
   Eigen::VectorXd depth;        ///< [m] along the inward normal, a value a node of the skin; filled and smoothed
-  double measured_share = 0.0;  ///< of the nodes, where the ray met bone
+  double measured_share = 0.0;  ///< the share of nodes whose ray met bone
 };
 
 /// Deeper bone than this belongs to another part of the head [m].
@@ -19,15 +19,17 @@ inline constexpr double kDeepestBone = 0.060;
 /// At least this share of the nodes must meet bone.
 inline constexpr double kLeastMeasuredShare = 0.25;
 
-/// Casts a ray from every node of the skin along its inward normal onto the bone. Nodes whose ray meets none within
-/// kDeepestBone take the harmonic continuation of those around (no value outside the measured range); then features
-/// shorter than about four times the smoothing length fade (smooth_over_grid), such as the step where bone ends.
+/// Casts a ray from every node of the skin along its inward normal onto the bone. Nodes whose ray
+/// meets none within kDeepestBone take the harmonic continuation of those around (no value outside
+/// the measured range); then features shorter than about four times the smoothing length fade
+/// (smooth_over_grid), such as the step where bone ends.
 /// @param grid  of which the skin alone is used
 /// @param bone  any surface; its orientation does not matter
 /// @param smoothing  length [m]; 0: none
-/// INVALID_ARGUMENT (field "scan_region.bone_scan") for a broken surface, FAILED_PRECONDITION when less than
-/// kLeastMeasuredShare of the rays meet bone, with the share. Second order in spacing and smoothing. Checked by
-/// tests/unit/geometry/bone_depth_test.cc: a sphere out of the middle of another.
+/// INVALID_ARGUMENT (field "scan_region.bone_scan") for a broken surface, FAILED_PRECONDITION when
+/// less than kLeastMeasuredShare of the rays meet bone, with the share. Second order in spacing and
+/// smoothing. Checked by tests/unit/geometry/bone_depth_test.cc: a sphere out of the middle of
+/// another.
 absl::StatusOr<BoneDepth> measure_bone_depth(const LayeredGrid& grid, const SurfaceMesh& bone, double smoothing);
 
 }  // namespace lipofill::geometry

@@ -36,10 +36,11 @@ struct ChartAround {
   std::vector<std::string> remarks;        ///< what could not be had as asked, a sentence each
 };
 
-/// Charts a rectangle of the flattened patch: the smallest, of any direction, that holds the footprints and the margin.
-/// A side gives up margin where a border of the skin or an obstacle comes closer; where a border runs through a
-/// footprint, the side that loses least of it moves in. INVALID_ARGUMENT with the footprint's field where less than 0.6
-/// of one is left, saying what ends there; FAILED_PRECONDITION for skin that folds over itself.
+/// Charts a rectangle of the flattened patch: the smallest, of any direction, that holds the
+/// footprints and the margin. A side gives up margin where a border of the skin or an obstacle
+/// comes closer; where a border runs through a footprint, the side that loses least of it moves in.
+/// INVALID_ARGUMENT with the footprint's field where less than 0.6 of one is left, saying what ends
+/// there; FAILED_PRECONDITION for skin that folds over itself.
 /// Checked by tests/unit/geometry/chart_around_test.cc.
 absl::StatusOr<ChartAround> chart_around(const RegionPatch& patch, const ChartAroundRequest& request, int n_xi,
                                          int n_eta);

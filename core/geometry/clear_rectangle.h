@@ -30,10 +30,11 @@ struct ClearRectangle {
   std::array<int, 4> obstacle_of_side{-1, -1, -1, -1};
 };
 
-/// The rectangle `box` with a margin around it, its sides moved in until it is clear of the obstacles. Of the four
-/// sides that can clear an obstacle the one that keeps most margin moves; the obstacles that leave least come first. One
-/// that can only be cleared by a side within the box stays inside, unless it may cut: then the side moves that loses the
-/// fewest of the `content` points. Checked by tests/unit/geometry/chart_around_test.cc.
+/// The rectangle `box` with a margin around it, its sides moved in until it is clear of the
+/// obstacles. Of the four sides that can clear an obstacle the one that keeps most margin moves;
+/// the obstacles that leave least come first. One that can only be cleared by a side within the box
+/// stays inside, unless it may cut: then the side moves that loses the fewest of the `content`
+/// points. Checked by tests/unit/geometry/chart_around_test.cc.
 ClearRectangle find_clear_rectangle(const Rectangle& box, double margin, const std::vector<ObstaclePoint>& obstacles,
                                     const std::vector<Eigen::Vector2d>& content);
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSmallestScaledJacobian = 0.1;
 constexpr double kGoodScaledJacobian = 0.5;
-constexpr double kLeastCosine = 0.8;  // of the tilt that the thickness is corrected for
+constexpr double kLeastCosine = 0.8;  // the thickness is corrected for tilts up to this cosine
 
 /// Total depth of every level under every node, along the normal [m].
 Eigen::MatrixXd compute_depths(const LayeredGrid& grid, const std::vector<LayerGeometry>& layers) {
@@ -49,8 +49,8 @@ int layer_of_level(const LayeredGrid& grid, int level) {
   return layer;
 }
 
-/// Tries normals smoothed over longer and longer lengths and takes the first that gives well-shaped hexahedra, or the
-/// best.
+/// Tries normals smoothed over longer and longer lengths and takes the first that gives well-shaped
+/// hexahedra, or the best.
 WorstHexahedron extrude_along_smoothed_normals(const Eigen::MatrixXd& depth, const Eigen::Vector2d& spacing,
                                                LayeredGrid& grid) {
   const Eigen::Matrix3Xd normals =

@@ -8,11 +8,12 @@
 
 namespace lipofill::geometry {
 
-/// Nodes of all levels: each node of the skin moved inwards, layer by layer, along the skin's normals smoothed over the
-/// grid as far as the hexahedra need to stay well shaped where the face curves. Thickness is measured along the skin's
-/// normal.
+/// Nodes of all levels: each node of the skin moved inwards, layer by layer, along the skin's
+/// normals smoothed over the grid as far as the hexahedra need to stay well shaped where the face
+/// curves. Thickness is measured along the skin's normal.
 /// @param skin  (3, nodes_per_level), xi fastest; xi x eta points outwards [m]
-/// FAILED_PRECONDITION, naming the place [mm] and the layer, where the worst scaled Jacobian stays below 0.1.
+/// FAILED_PRECONDITION, naming the place [mm] and the layer, where the worst scaled Jacobian stays
+/// below 0.1.
 absl::StatusOr<LayeredGrid> extrude_layers(const Eigen::Matrix3Xd& skin, int n_xi, int n_eta,
                                            const std::vector<LayerGeometry>& layers);
 

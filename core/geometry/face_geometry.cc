@@ -95,7 +95,8 @@ absl::StatusOr<FaceGeometry> build_square(const SquareSpec& square, const FaceGe
   return geometry;
 }
 
-/// Half the mean edge of the scan in the patch: facets of that length fade from the skin, anatomy does not.
+/// Half the mean edge of the scan in the patch: facets of that length fade from the skin, anatomy
+/// does not.
 double choose_smoothing_length(const SurfaceMesh& patch, const Eigen::Vector2d& spacing) {
   std::vector<double> lengths;
   for (const EdgeUse& use : sort_edge_uses(patch)) {

@@ -32,7 +32,8 @@ struct LandmarkPoint {
   double forward = 0.0;  ///< [m]
 };
 
-/// A point on the outer skin, by whichever means is at hand. The last two are projected onto the outer skin.
+/// A point on the outer skin, by whichever means is at hand. The last two are projected onto the
+/// outer skin.
 using SkinPoint = std::variant<ChartPoint, Eigen::Vector3d, LandmarkPoint>;
 
 /// A flat rectangle in the plane z = 0, xi along +x, eta along +y, from the origin.
@@ -43,7 +44,7 @@ struct SquareSpec {
 
 /// A quadrilateral region of the outer skin of a scan, between corners or around footprints.
 struct ScanRegionSpec {
-  SurfaceMesh scan;  ///< as read: cleaning is part of building
+  SurfaceMesh scan;  ///< is as it was read: cleaning is part of building
   Landmarks landmarks;
   std::optional<HeadAxes> axes;      ///< estimated from the landmarks when absent
   std::array<SkinPoint, 4> corners;  ///< (xi, eta) = (0,0), (1,0), (1,1), (0,1); no ChartPoint
@@ -61,24 +62,24 @@ struct FaceGeometrySpec {
   std::variant<SquareSpec, ScanRegionSpec> region;
   int n_xi = 0;
   int n_eta = 0;
-  std::vector<LayerGeometry> layers;  ///< from the skin inwards
+  std::vector<LayerGeometry> layers;  ///< they go from the skin inwards
 };
 
-/// A vertex of the scan that lies in the region and rides on the skin of the model: it moves by the skin's displacement
-/// at its place in the chart, bilinear between the nodes of the skin.
+/// A vertex of the scan that lies in the region and rides on the skin of the model: it moves by the
+/// skin's displacement at its place in the chart, bilinear between the nodes of the skin.
 struct Rider {
   int vertex = 0;  ///< index into FaceGeometry::scan
   ChartPoint place;
 };
 
-/// Distance of a scan's vertices from the smoothed skin above which its noise shows in results, and may be to blame for
-/// hexahedra that fold [m rms].
+/// Distance of a scan's vertices from the smoothed skin above which its noise shows in results, and
+/// may be to blame for hexahedra that fold [m rms].
 inline constexpr double kRoughScan = 0.35e-3;
 
 /// A region of skin, charted and extruded.
 struct FaceGeometry {
   LayeredGrid grid;
-  SurfaceMesh scan;           ///< as given, vertex for vertex, cleaned of nothing; empty for a square
+  SurfaceMesh scan;           ///< is as it was given, vertex for vertex; empty for a square
   std::vector<Rider> riders;  ///< ascending in vertex
   HeadAxes axes;
   Landmarks landmarks;
@@ -86,21 +87,24 @@ struct FaceGeometry {
   double max_rider_distance = 0.0;        ///< [m]  from the resampled skin
   double rms_rider_distance = 0.0;        ///< [m]
   std::vector<std::string> scan_remarks;  ///< what cleaning did, a sentence each
-  /// What is unusual about scan, landmarks and region, a sentence each with its figure: to know before relying on it.
+  /// What is unusual about scan, landmarks and region, a sentence each with its figure: to know
+  /// before relying on it.
   std::vector<std::string> cautions;
 };
 
-/// Reports how far a build is, in [0, 1], and what it is doing. Returning false asks it to stop (CANCELLED).
+/// Reports how far a build is, in [0, 1], and what it is doing. Returning false asks it to stop
+/// (CANCELLED).
 using Progress = std::function<bool(double fraction, const char* stage)>;
 
 /// Cleans the scan, cuts the region, charts it, resamples it and extrudes the layers inwards.
 ///
-/// The chart is a conformal (or harmonic) map of the patch; its grid is smooth and free of folds. Only the outer skin
-/// takes part: the mouth bag and other inner surfaces of a scan are found by casting rays and left out. Errors:
-/// INVALID_ARGUMENT with field violations (fields named as in lipofill.v1.ModelSpec: "n_xi", "layers[1].thickness_mm",
-/// "scan_region.corners[2]", "scan_region.landmarks_mm", values in the units of those names) for what the caller gave;
-/// FAILED_PRECONDITION where the scan cannot be made good, saying where (scan coordinates in mm) and why;
-/// CANCELLED. Nothing is thrown. Deterministic.
+/// The chart is a conformal (or harmonic) map of the patch; its grid is smooth and free of folds.
+/// Only the outer skin takes part: the mouth bag and other inner surfaces of a scan are found by
+/// casting rays and left out. Errors: INVALID_ARGUMENT with field violations (fields named as in
+/// lipofill.v1.ModelSpec: "n_xi", "layers[1].thickness_mm", "scan_region.corners[2]",
+/// "scan_region.landmarks_mm", values in the units of those names) for what the caller gave;
+/// FAILED_PRECONDITION where the scan cannot be made good, saying where (scan coordinates in mm)
+/// and why; CANCELLED. Nothing is thrown. Deterministic.
 /// Checked by tests/unit/geometry/.
 absl::StatusOr<FaceGeometry> build_face_geometry(const FaceGeometrySpec& spec, const Progress& progress);
 
@@ -108,13 +112,14 @@ absl::StatusOr<FaceGeometry> build_face_geometry(const FaceGeometrySpec& spec, c
 /// square, layers.
 absl::Status check_face_geometry(const FaceGeometrySpec& spec);
 
-/// Lays layers under the skin of a geometry in place of those it has, as build_face_geometry does. FAILED_PRECONDITION
-/// where they fold, and INVALID_ARGUMENT as check_layers.
+/// Lays layers under the skin of a geometry in place of those it has, as build_face_geometry does.
+/// FAILED_PRECONDITION where they fold, and INVALID_ARGUMENT as check_layers.
 absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& geometry);
 
-/// The chart place of a skin point: the nearest on the skin, or for a point given by landmarks that lies deeper than
-/// 10 mm the one along the outward normal. INVALID_ARGUMENT (field violation "") when it names an unknown landmark, lies
-/// farther from the outer skin, or is outside the region by more than 1e-6.
+/// The chart place of a skin point: the nearest on the skin, or for a point given by landmarks that
+/// lies deeper than 10 mm the one along the outward normal. INVALID_ARGUMENT (field violation "")
+/// when it names an unknown landmark, lies farther from the outer skin, or is outside the region by
+/// more than 1e-6.
 absl::StatusOr<ChartPoint> locate_in_chart(const FaceGeometry& geometry, const SkinPoint& point);
 
 /// Position on the undeformed skin [m], bilinear between nodes.

@@ -30,8 +30,8 @@ struct FlatPatch {
 
 using Samples = std::vector<std::vector<FootprintSample>>;
 
-/// Two vertices at the ends of the longest footprint, or as far apart as the patch allows: the map is truest between
-/// them.
+/// Two vertices at the ends of the longest footprint, or as far apart as the patch allows: the map
+/// is truest between them.
 std::pair<int, int> choose_pins(const SurfaceMesh& mesh, const std::vector<Footprint>& footprints);
 
 /// Places what the request names in the plane of a map of the patch.

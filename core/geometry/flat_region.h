@@ -24,15 +24,15 @@ Eigen::Vector2d place_in_plane(const SurfaceMesh& mesh, const Eigen::Matrix2Xd& 
 
 bool contains(const Quadrilateral& quad, const Eigen::Vector2d& p);
 
-/// The first triangle with a corner in the quadrilateral that the map turns over; -1 when there is none. Slivers turn
-/// over without harm.
+/// The first triangle with a corner in the quadrilateral that the map turns over; -1 when there is
+/// none. Slivers turn over without harm.
 int find_fold(const SurfaceMesh& mesh, const Eigen::Matrix2Xd& flat, const Quadrilateral& quad);
 
 /// FAILED_PRECONDITION that says where a triangle is turned over.
 absl::Status describe_fold(const SurfaceMesh& mesh, int triangle);
 
-/// Brings the points of the bilinear grid of the quadrilateral back to the surface. FAILED_PRECONDITION, saying where,
-/// when one of them has no triangle.
+/// Brings the points of the bilinear grid of the quadrilateral back to the surface.
+/// FAILED_PRECONDITION, saying where, when one of them has no triangle.
 absl::StatusOr<RegionChart> sample_chart(const SurfaceMesh& mesh, const FlatRegion& region, int n_xi, int n_eta);
 
 /// "(1.0, 2.0, 3.0) mm".

@@ -15,7 +15,8 @@ struct Footprint {
   double half_width = 0.0;   ///< [m]
 };
 
-/// Smallest share of a zone that must lie on the model. With less, what is asked for is not what is simulated.
+/// Smallest share of a zone that must lie on the model. With less, what is asked for is not what is
+/// simulated.
 inline constexpr double kSmallestZoneShare = 0.6;
 /// A zone with less of it on the model than this is remarked upon.
 inline constexpr double kWholeZoneShare = 0.98;

@@ -16,8 +16,9 @@ struct FootprintSample {
   bool is_outline = false;  ///< on the rim of the ellipse; the others stand for equal shares of it
 };
 
-/// Samples a footprint in the tangent plane at its centre, and brings the points to the skin: 96 on the rim, 192 evenly
-/// within. A point lies beyond the border when the nearest place is on the border and off to the side.
+/// Samples a footprint in the tangent plane at its centre, and brings the points to the skin: 96 on
+/// the rim, 192 evenly within. A point lies beyond the border when the nearest place is on the
+/// border and off to the side.
 std::vector<FootprintSample> sample_footprint(const SurfaceMesh& skin, const SkinReach& reach,
                                               const Footprint& footprint);
 

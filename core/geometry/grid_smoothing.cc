@@ -9,7 +9,8 @@
 namespace lipofill::geometry {
 namespace {
 
-/// A second difference: weights on a few grid points whose weighted sum is one term of the bending energy.
+/// A second difference: weights on a few grid points whose weighted sum is one term of the bending
+/// energy.
 struct BendingTerms {
   int n_xi;
   int n_eta;
@@ -49,7 +50,8 @@ Eigen::SparseMatrix<double> assemble_identity_plus_bending(int n_xi, int n_eta, 
   return matrix;
 }
 
-/// Derivative over the index k of n + 1 values spaced `stride` apart, from point `at`; second order everywhere.
+/// Derivative over the index k of n + 1 values spaced `stride` apart, from point `at`; second order
+/// everywhere.
 Eigen::Vector3d differentiate(const Eigen::Matrix3Xd& points, int at, int k, int n, int stride) {
   if (k == 0) return -1.5 * points.col(at) + 2.0 * points.col(at + stride) - 0.5 * points.col(at + 2 * stride);
   if (k == n) return 1.5 * points.col(at) - 2.0 * points.col(at - stride) + 0.5 * points.col(at - 2 * stride);

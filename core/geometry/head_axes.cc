@@ -24,8 +24,8 @@ std::optional<Eigen::Vector3d> sum_of_left_minus_right(const Landmarks& landmark
   return sum;
 }
 
-/// A line up the midline of the face, and how far it leans forward of the head's up [rad]: mean of two scans whose axes
-/// are known (menton 1.0 and 4.6 degrees, pogonion -3.8 and -3.4 degrees).
+/// A line up the midline of the face, and how far it leans forward of the head's up [rad]: mean of
+/// two scans whose axes are known (menton 1.0 and 4.6 degrees, pogonion -3.8 and -3.4 degrees).
 struct Profile {
   Eigen::Vector3d chin_to_nasion;
   double forward_lean = 0.0;

@@ -8,7 +8,8 @@ namespace lipofill::geometry {
 
 namespace {
 
-/// The neighbours of each corner, so ordered that a positively oriented element has a positive determinant.
+/// The neighbours of each corner, so ordered that a positively oriented element has a positive
+/// determinant.
 constexpr int kNeighbours[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
                                    {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
 
@@ -36,8 +37,9 @@ double compute_scaled_jacobian(const Eigen::Matrix<double, 3, 8>& nodes) {
 
 namespace {
 
-/// The smallest cosine between an edge of the deep face and its partner in the outer face. A column that runs through
-/// the centre of a sphere comes out turned by half a circle, with good corners everywhere: this tells.
+/// The smallest cosine between an edge of the deep face and its partner in the outer face. A column
+/// that runs through the centre of a sphere comes out turned by half a circle, with good corners
+/// everywhere: this tells.
 double compute_edge_agreement(const Eigen::Matrix<double, 3, 8>& x) {
   double smallest = 1.0;
   for (int k = 0; k < 4; ++k) {

@@ -6,10 +6,12 @@
 
 namespace lipofill::geometry {
 
-/// Scaled Jacobian of a hexahedron: the least, over its corners and its centre, of the determinant of the three
-/// normalised edge (at the centre: principal axis) vectors. 1 for a cuboid, not positive when the element is folded, -1
-/// when an edge has no length or a position is not finite. As Verdict defines it (Stimpson et al. 2007).
-/// @param nodes  (3, 8) in the order of solid::HexMesh: deep face 0-3, outer face 4-7, anticlockwise seen from outside
+/// Scaled Jacobian of a hexahedron: the least, over its corners and its centre, of the determinant
+/// of the three normalised edge (at the centre: principal axis) vectors. 1 for a cuboid, not
+/// positive when the element is folded, -1 when an edge has no length or a position is not finite.
+/// As Verdict defines it (Stimpson et al. 2007).
+/// @param nodes  (3, 8) in the order of solid::HexMesh: deep face 0-3, outer face 4-7,
+///               anticlockwise seen from outside
 /// Checked by tests/unit/solid/hex_quality_test.cc and tests/unit/geometry/chart_test.cc.
 double compute_scaled_jacobian(const Eigen::Matrix<double, 3, 8>& nodes);
 

@@ -54,7 +54,8 @@ void check_size(const Landmarks& landmarks, FieldViolations& violations, std::ve
   }
 }
 
-/// Left and right landmarks against the axes, which may be given: a pair that stands the wrong way round.
+/// Left and right landmarks against the axes, which may be given: a pair that stands the wrong way
+/// round.
 void check_pairs(const Landmarks& landmarks, const HeadAxes& axes, FieldViolations& violations) {
   for (const char* name : {"exocanthion", "cheilion", "gonion", "zygion", "tragion"}) {
     const Eigen::Vector3d* left = find(landmarks, absl::StrCat(name, "_left"));
@@ -70,8 +71,8 @@ void check_pairs(const Landmarks& landmarks, const HeadAxes& axes, FieldViolatio
   }
 }
 
-/// The nose and the chin lie in front of the cheekbones and the angles of the jaw; behind them, left and right are
-/// swapped or the scan is mirrored: forward follows from left and up.
+/// The nose and the chin lie in front of the cheekbones and the angles of the jaw; behind them,
+/// left and right are swapped or the scan is mirrored: forward follows from left and up.
 void check_front(const Landmarks& landmarks, const HeadAxes& axes, FieldViolations& violations) {
   for (const char* side : {"_left", "_right"}) {
     for (const char* rear : {"zygion", "gonion", "tragion"}) {
@@ -133,7 +134,8 @@ void add_mouth(const Landmarks& landmarks, const HeadAxes& axes, const std::stri
   const Eigen::Vector3d* corner = find(landmarks, "cheilion" + side);
   const Eigen::Vector3d* nose = find(landmarks, "subnasale");
   if (corner == nullptr || nose == nullptr) return;
-  // The middle of the mouth stands as far forward as the base of the nose, at the height of its corner.
+  // The middle of the mouth stands as far forward as the base of the nose, at the height of its
+  // corner.
   const Eigen::Vector3d middle = *nose + (*corner - *nose).dot(axes.up) * axes.up;
   for (const double t : {0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0}) {
     found.push_back({"the mouth", (1.0 - t) * *corner + t * middle});

@@ -8,9 +8,10 @@ namespace lipofill::geometry {
 
 /// The structured grid of hexahedra under a charted region of skin, before any zone splits it.
 ///
-/// Levels are surfaces of nodes: level 0 is the skin, the last level the deep face of the innermost layer. Layer l has
-/// `elements_through[l]` hexahedra between its outer level `first_level(l)` and its inner level `first_level(l + 1)`.
-/// Node (i, j) of a level sits at the chart point (i / n_xi, j / n_eta); xi x eta points out of the face.
+/// Levels are surfaces of nodes: level 0 is the skin, the last level the deep face of the innermost
+/// layer. Layer l has `elements_through[l]` hexahedra between its outer level `first_level(l)` and
+/// its inner level `first_level(l + 1)`. Node (i, j) of a level sits at the chart point (i / n_xi,
+/// j / n_eta); xi x eta points out of the face.
 struct LayeredGrid {
   int n_xi = 0;
   int n_eta = 0;

@@ -1,5 +1,5 @@
-// Wavefront OBJ: the statements that shape a surface (v, f) are parsed here to the last byte, the others are known and
-// passed over.
+// Wavefront OBJ: the statements that shape a surface (v, f) are parsed here to the last byte, the
+// others are known and passed over.
 
 #include <algorithm>
 #include <array>
@@ -34,8 +34,8 @@ absl::Status parse_vertex(std::string_view line, size_t line_number, SurfaceBuil
   return builder.add_vertex(xyz, at_line(line_number));
 }
 
-/// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0. Negative indices count back from the last
-/// vertex.
+/// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0. Negative indices count
+/// back from the last vertex.
 absl::StatusOr<long long> parse_corner(std::string_view word, size_t line_number, long long n_vertices) {
   const auto index = parse_integer(word.substr(0, word.find('/')));
   const long long vertex = !index                                ? -1

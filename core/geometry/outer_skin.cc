@@ -15,8 +15,8 @@ constexpr int kFreeRaysOfSkin = 4;
 constexpr double kLargestIsland = 1e-4;  // [m2]
 constexpr double kRayStart = 2e-5;       // [m] above the surface, so that a ray does not meet its own triangle
 
-/// The normal and two rings of six around it, 30 and 60 degrees off. They start from a direction of the surface's own,
-/// so that a patient turned in space is seen the same.
+/// The normal and two rings of six around it, 30 and 60 degrees off. They start from a direction of
+/// the surface's own, so that a patient turned in space is seen the same.
 std::array<Eigen::Vector3d, kRays> make_ray_directions(const Eigen::Vector3d& normal, const Eigen::Vector3d& along) {
   const Eigen::Vector3d u = (along - along.dot(normal) * normal).normalized();
   const Eigen::Vector3d v = normal.cross(u);

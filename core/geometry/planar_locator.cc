@@ -6,7 +6,7 @@
 namespace lipofill::geometry {
 namespace {
 
-constexpr double kEdgeTolerance = 1e-9;  // of a barycentric coordinate
+constexpr double kEdgeTolerance = 1e-9;  // a barycentric coordinate may be so far below 0
 constexpr int kMaxBinsAlong = 512;
 
 }  // namespace

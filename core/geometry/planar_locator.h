@@ -6,8 +6,8 @@
 
 namespace lipofill::geometry {
 
-/// Finds the triangle of a flattened patch that holds a point of the plane. Only triangles turned the right way take
-/// part.
+/// Finds the triangle of a flattened patch that holds a point of the plane. Only triangles turned
+/// the right way take part.
 class PlanarLocator {
  public:
   PlanarLocator(const Eigen::Matrix2Xd& points, const std::vector<std::array<int, 3>>& triangles);

@@ -17,8 +17,8 @@ size_t size_of(PlyType type);
 struct PlyProperty {
   std::string name;
   bool is_list = false;
-  PlyType count_type = PlyType::kUint8;  ///< of a list
-  PlyType type = PlyType::kFloat32;      ///< of the value, or of each item of the list
+  PlyType count_type = PlyType::kUint8;  ///< a list states its length in it
+  PlyType type = PlyType::kFloat32;      ///< the value has it, or each item of the list
 };
 
 struct PlyElement {
@@ -34,8 +34,8 @@ struct PlyHeader {
   size_t body_line = 0;    ///< lines before the body
 };
 
-/// The header of a PLY file. Every element's count is checked against the bytes that follow, so that no count can make
-/// a reader loop or reserve beyond the file.
+/// The header of a PLY file. Every element's count is checked against the bytes that follow, so
+/// that no count can make a reader loop or reserve beyond the file.
 absl::StatusOr<PlyHeader> parse_ply_header(std::string_view bytes);
 
 }  // namespace lipofill::geometry

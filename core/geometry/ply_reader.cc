@@ -1,4 +1,5 @@
-// PLY: text, binary little-endian and binary big-endian. Elements other than vertex and face are passed over.
+// PLY: text, binary little-endian and binary big-endian. Elements other than vertex and face are
+// passed over.
 
 #include <algorithm>
 #include <bit>
@@ -99,8 +100,8 @@ absl::Status failure(const PlyBody& body, const PlyElement& element) {
   return absl::InvalidArgumentError(message);
 }
 
-/// Reads one record: `scalars` takes the value of each scalar property, `list` the items of the list property
-/// `list_index`.
+/// Reads one record: `scalars` takes the value of each scalar property, `list` the items of the
+/// list property `list_index`.
 absl::Status read_record(PlyBody& body, const PlyElement& element, int list_index, std::vector<double>& scalars,
                          std::vector<double>& list) {
   for (size_t k = 0; k < element.properties.size(); ++k) {

@@ -14,13 +14,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-/// A binary tree, split at the median of the longest side down to leaves of four triangles, of which every other level
-/// is then left out.
+/// A binary tree, split at the median of the longest side down to leaves of four triangles, of
+/// which every other level is then left out.
 struct RayTree::Builder {
   struct Box {
     Eigen::Vector3d low;
     Eigen::Vector3d high;
-    int first = 0;   ///< of the triangles of a leaf
+    int first = 0;   ///< the triangles of a leaf begin here
     int count = 0;   ///< 0: not a leaf
     int second = 0;  ///< the other child; the one child follows its parent
   };

@@ -9,9 +9,9 @@
 
 namespace lipofill::geometry {
 
-/// Tells whether and where rays meet a surface: a tree of boxes over its triangles, split at the median, four boxes and
-/// four triangles tried at once. Finding the outer skin casts some hundred thousand rays; VTK's locators take 30 to 100
-/// microseconds a ray, this one a third of one.
+/// Tells whether and where rays meet a surface: a tree of boxes over its triangles, split at the
+/// median, four boxes and four triangles tried at once. Finding the outer skin casts some hundred
+/// thousand rays; VTK's locators take 30 to 100 microseconds a ray, this one a third of one.
 class RayTree {
  public:
   explicit RayTree(const SurfaceMesh& mesh);
@@ -19,8 +19,8 @@ class RayTree {
   /// True when the ray from a point meets the surface anywhere.
   bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& direction) const;
 
-  /// Distance to where the ray first meets the surface, in lengths of `direction`; infinity where it does not, up to
-  /// `reach`.
+  /// Distance to where the ray first meets the surface, in lengths of `direction`; infinity where
+  /// it does not, up to `reach`.
   double find_first(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double reach) const;
 
  private:
@@ -42,8 +42,8 @@ class RayTree {
   struct Ray;
   struct Builder;
 
-  /// Calls visit(distances) for every leaf whose box the ray meets within reach(), the distances infinite where a
-  /// triangle is missed; until it returns false.
+  /// Calls visit(distances) for every leaf whose box the ray meets within reach(), the distances
+  /// infinite where a triangle is missed; until it returns false.
   template <typename Reach, typename Visit>
   void walk(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, const Reach& reach,
             const Visit& visit) const;

@@ -13,7 +13,7 @@ namespace lipofill::geometry {
 namespace {
 
 constexpr double kUnreached = std::numeric_limits<double>::infinity();
-constexpr double kSpare = 1.25;  // of the corners' own sum of distances; distances along edges are up to 1.2 too long
+constexpr double kSpare = 1.25;         // multiplies the corners' own sum; ways along edges are up to 1.2 too long
 constexpr double kSpareLength = 0.005;  // [m] a corner
 constexpr double kLargestFill = 0.015;  // [m] across
 constexpr int kMaxPatchVertices = 300'000;
@@ -49,8 +49,8 @@ bool holds(const SurfaceMesh& mesh, int triangle, const Eigen::Vector3d& positio
   return (there - position).norm() <= kRoundOff * std::sqrt(compute_area_vector(mesh, c).norm());
 }
 
-/// Vertices of the triangles that hold a point: of two where it lies on an edge, of all around where it is a vertex.
-/// Which of them a search finds first is up to round-off.
+/// Vertices of the triangles that hold a point: of two where it lies on an edge, of all around
+/// where it is a vertex. Which of them a search finds first is up to round-off.
 std::vector<int> find_vertices_around(const SurfaceMesh& mesh, const SurfacePoint& point) {
   const auto& own = mesh.triangles[point.triangle];
   std::vector<int> around(own.begin(), own.end());
@@ -63,7 +63,8 @@ std::vector<int> find_vertices_around(const SurfaceMesh& mesh, const SurfacePoin
   return around;
 }
 
-/// Distances along edges from a point to all vertices (Dijkstra); `around`: the vertices around the point.
+/// Distances along edges from a point to all vertices (Dijkstra); `around`: the vertices around the
+/// point.
 std::vector<double> compute_edge_distances(const SurfaceMesh& mesh, const VertexGraph& graph,
                                            const Eigen::Vector3d& source, const std::vector<int>& around) {
   std::vector<double> distance(mesh.n_vertices(), kUnreached);
@@ -88,7 +89,8 @@ std::vector<double> compute_edge_distances(const SurfaceMesh& mesh, const Vertex
   return distance;
 }
 
-/// Sum of the distances to the four corners, a value a vertex; the value at corner k in `at_corner[k]`.
+/// Sum of the distances to the four corners, a value a vertex; the value at corner k in
+/// `at_corner[k]`.
 std::vector<double> add_up_distances(const SurfaceMesh& skin, const std::array<SurfacePoint, 4>& corners,
                                      std::array<double, 4>& at_corner) {
   const VertexGraph graph = make_vertex_graph(skin);
@@ -151,7 +153,8 @@ double compute_width(const SurfaceMesh& mesh, const std::vector<int>& loop) {
   return (high - low).norm();
 }
 
-/// Closes a border by a fan from its middle. The border runs with its triangles, so the fan runs against it.
+/// Closes a border by a fan from its middle. The border runs with its triangles, so the fan runs
+/// against it.
 void fill_hole(const std::vector<int>& loop, RegionPatch& patch) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const int v : loop) middle += patch.mesh.points.col(v);

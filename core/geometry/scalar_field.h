@@ -6,9 +6,9 @@
 
 namespace lipofill::geometry {
 
-/// A scalar over the chart: n_xi x n_eta samples spaced evenly, both ends included, xi running fastest, bilinear
-/// between them. One sample is a constant. The unit is that of whoever holds the field; metres, pascals and so on
-/// inside core.
+/// A scalar over the chart: n_xi x n_eta samples spaced evenly, both ends included, xi running
+/// fastest, bilinear between them. One sample is a constant. The unit is that of whoever holds the
+/// field; metres, pascals and so on inside core.
 struct ScalarField {
   int n_xi = 1;
   int n_eta = 1;

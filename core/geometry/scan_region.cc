@@ -86,7 +86,8 @@ std::string explain_off_skin(double to_skin, double to_scan, bool is_beyond) {
                          kFarthestFromSkin * 1e3);
 }
 
-/// Moves the corners onto the outer skin: those given by landmarks along the outward normal, where they lie deep.
+/// Moves the corners onto the outer skin: those given by landmarks along the outward normal, where
+/// they lie deep.
 absl::StatusOr<std::array<SurfacePoint, 4>> project_corners(const SurfaceMesh& skin, const ScanRegionSpec& spec,
                                                             const SurfaceLocator& whole_locator,
                                                             const std::array<Eigen::Vector3d, 4>& positions,

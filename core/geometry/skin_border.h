@@ -17,7 +17,8 @@ class BorderFinder {
  public:
   explicit BorderFinder(const SurfaceMesh& surface);
 
-  /// True when the nearest place of a point is on a border and the point is off to its side, by more than 0.5 mm.
+  /// True when the nearest place of a point is on a border and the point is off to its side, by
+  /// more than 0.5 mm.
   bool is_beyond(const Eigen::Vector3d& point, const SurfacePoint& nearest) const;
 
  private:

@@ -35,8 +35,8 @@ CellPoint evaluate(const LayeredGrid& grid, const Cell& cell, double r, double s
   return point;
 }
 
-/// Local coordinates of the foot of a point in a cell continued bilinearly. It stays near the cell: far out, a bilinear
-/// cell turns over.
+/// Local coordinates of the foot of a point in a cell continued bilinearly. It stays near the cell:
+/// far out, a bilinear cell turns over.
 Eigen::Vector2d find_foot(const LayeredGrid& grid, const Cell& cell, const Eigen::Vector3d& point, Eigen::Vector2d rs) {
   constexpr int kMaxIterations = 20;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -82,7 +82,8 @@ SkinFoot SkinProjection::project(const Eigen::Vector3d& point) const {
     const Cell next{std::clamp(cell.i + (rs.x() > 1.0 + kSlack) - (rs.x() < -kSlack), 0, grid_.n_xi - 1),
                     std::clamp(cell.j + (rs.y() > 1.0 + kSlack) - (rs.y() < -kSlack), 0, grid_.n_eta - 1)};
     if (next.i == cell.i && next.j == cell.j) break;
-    // At a crease the feet in the two cells can each lie in the other: the last cell and its edge are then the answer.
+    // At a crease the feet in the two cells can each lie in the other: the last cell and its edge
+    // are then the answer.
     rs = Eigen::Vector2d(rs.x() - (next.i - cell.i), rs.y() - (next.j - cell.j)).cwiseMax(0.0).cwiseMin(1.0);
     cell = next;
   }

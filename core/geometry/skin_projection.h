@@ -15,8 +15,8 @@ struct SkinFoot {
   double distance = 0.0;  ///< [m] from the skin at `place`, moved into [0, 1]
 };
 
-/// Finds feet by Newton's method in the cells of the grid, starting from the nearest facet; beyond the rim the cells go
-/// on bilinearly.
+/// Finds feet by Newton's method in the cells of the grid, starting from the nearest facet; beyond
+/// the rim the cells go on bilinearly.
 class SkinProjection {
  public:
   explicit SkinProjection(const LayeredGrid& grid);
@@ -31,9 +31,9 @@ class SkinProjection {
   std::unique_ptr<SurfaceLocator> locator_;
 };
 
-/// The position a skin point asks for, before it is projected onto the skin [m]. INVALID_ARGUMENT (field violation "")
-/// for a landmark that is not there, weights that do not add up to a positive number, a value that is not finite, and
-/// for a ChartPoint.
+/// The position a skin point asks for, before it is projected onto the skin [m]. INVALID_ARGUMENT
+/// (field violation "") for a landmark that is not there, weights that do not add up to a positive
+/// number, a value that is not finite, and for a ChartPoint.
 absl::StatusOr<Eigen::Vector3d> resolve_position(const SkinPoint& point, const Landmarks& landmarks,
                                                  const HeadAxes& axes);
 

@@ -1,5 +1,5 @@
-// STL, binary and text. The format repeats a vertex for every triangle; equal points become one vertex, in the order
-// they first appear.
+// STL, binary and text. The format repeats a vertex for every triangle; equal points become one
+// vertex, in the order they first appear.
 
 #include <bit>
 #include <cmath>

@@ -11,16 +11,17 @@
 
 namespace lipofill::geometry {
 
-/// Gathers the vertices and polygons of a file as they are read, within bounds. `where` in every call is the place in
-/// the file that an error names ("line 12"). Coordinates are in the file's unit.
+/// Gathers the vertices and polygons of a file as they are read, within bounds. `where` in every
+/// call is the place in the file that an error names ("line 12"). Coordinates are in the file's
+/// unit.
 class SurfaceBuilder {
  public:
   explicit SurfaceBuilder(const SurfaceLimits& limits) : limits_(limits) {}
 
   absl::Status add_vertex(const std::array<double, 3>& xyz, const std::string& where);
 
-  /// A polygon, cut into a fan of triangles from its first corner. Corners may name vertices still to come; build()
-  /// checks them.
+  /// A polygon, cut into a fan of triangles from its first corner. Corners may name vertices still
+  /// to come; build() checks them.
   absl::Status add_polygon(const std::vector<long long>& corners, const std::string& where);
 
   long long n_vertices() const { return static_cast<long long>(coordinates_.size() / 3); }

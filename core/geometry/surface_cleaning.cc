@@ -13,7 +13,7 @@ namespace lipofill::geometry {
 namespace {
 
 constexpr double kSamePlace = 1e-6;            // [m]
-constexpr double kSpeckShareOfLargest = 0.02;  // of the area
+constexpr double kSpeckShareOfLargest = 0.02;  // a speck has less than this share of the area
 constexpr int kMaxNonManifoldPasses = 20;
 
 std::string counted(size_t n, const char* singular, const char* plural) {

@@ -9,7 +9,7 @@
 namespace lipofill::geometry {
 namespace {
 
-constexpr double kOnEdge = 1e-7;  // of a barycentric coordinate
+constexpr double kOnEdge = 1e-7;  // a barycentric coordinate below this is on the edge
 
 /// Asks for every so many points, which take some milliseconds, whether they are wanted.
 class Patience {
@@ -25,8 +25,9 @@ class Patience {
   size_t n_points_ = 0;
 };
 
-/// Signs distances with the normal of the nearest face, edge or vertex, those of edges and vertices weighted by the
-/// angles around them: the sign is then right everywhere (Baerentzen & Aanaes 2005).
+/// Signs distances with the normal of the nearest face, edge or vertex, those of edges and vertices
+/// weighted by the angles around them: the sign is then right everywhere (Baerentzen & Aanaes
+/// 2005).
 class DistanceSigner {
  public:
   explicit DistanceSigner(const SurfaceMesh& surface)
@@ -106,9 +107,9 @@ std::vector<std::vector<int>> list_neighbours(const SurfaceMesh& mesh) {
   return beside;
 }
 
-/// Nearest points on the patch of the part of the target that lies over it: from the vertices the patch is nearest to,
-/// along edges, as far as the nearest point stays off the patch's border. The far side of the head, whose nearest point
-/// may be in the patch's inside as well, is not reached.
+/// Nearest points on the patch of the part of the target that lies over it: from the vertices the
+/// patch is nearest to, along edges, as far as the nearest point stays off the patch's border. The
+/// far side of the head, whose nearest point may be in the patch's inside as well, is not reached.
 absl::StatusOr<std::vector<SurfacePoint>> find_opposite_vertices(const SurfaceMesh& patch, const SurfaceMesh& target,
                                                                  Patience& patience) {
   const SurfaceLocator locator(patch);

@@ -17,7 +17,8 @@ struct DistanceStatistics {
   double max = 0.0;  ///< the one-sided Hausdorff distance
 };
 
-/// Signed distance of each point to a surface through VTK: positive on the outside of its nearest triangle [m].
+/// Signed distance of each point to a surface through VTK: positive on the outside of its nearest
+/// triangle [m].
 std::vector<double> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface);
 /// The same; CANCELLED once it is unwanted.
 absl::StatusOr<std::vector<double>> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface,

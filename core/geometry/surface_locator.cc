@@ -36,8 +36,9 @@ void fill(vtkPolyData* surface, const SurfaceMesh& mesh) {
   surface->SetPolys(cells);
 }
 
-/// VTK sorts the cells of the locator's boxes in parallel and by box alone: which of two triangles at the same distance
-/// is found would change from one build to the next. (vtkSMPTools.h, the front of this interface, is not C++20.)
+/// VTK sorts the cells of the locator's boxes in parallel and by box alone: which of two triangles
+/// at the same distance is found would change from one build to the next. (vtkSMPTools.h, the front
+/// of this interface, is not C++20.)
 void build_in_one_thread(vtkStaticCellLocator* locator) {
   [[maybe_unused]] static const bool is_sequential =
       vtk::detail::smp::vtkSMPToolsAPI::GetInstance().SetBackend("Sequential");

@@ -10,11 +10,12 @@ namespace lipofill::geometry {
 struct SurfacePoint {
   int triangle = -1;
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-  double distance = 0.0;                               ///< from the point asked about [m]
+  double distance = 0.0;                               ///< the point asked about is this far away [m]
 };
 
-/// Nearest points on a surface, through VTK. The surface must have a triangle. Of triangles at the same distance it is
-/// the same one that is found every time. Checked by tests/unit/geometry/surface_locator_test.cc.
+/// Nearest points on a surface, through VTK. The surface must have a triangle. Of triangles at the
+/// same distance it is the same one that is found every time. Checked by
+/// tests/unit/geometry/surface_locator_test.cc.
 class SurfaceLocator {
  public:
   explicit SurfaceLocator(const SurfaceMesh& mesh);

@@ -6,7 +6,8 @@
 
 namespace lipofill::geometry {
 
-/// A triangulated surface in the scan's own frame, in metres. Vertices are in the order of the file they came from.
+/// A triangulated surface in the scan's own frame, in metres. Vertices are in the order of the file
+/// they came from.
 struct SurfaceMesh {
   Eigen::Matrix3Xd points;                    ///< [m]  (3, n_vertices)
   std::vector<std::array<int, 3>> triangles;  ///< anticlockwise seen from outside

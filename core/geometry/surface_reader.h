@@ -28,14 +28,14 @@ struct SurfaceCheck {
   Eigen::Vector3d extent = Eigen::Vector3d::Zero();  ///< [m]
 };
 
-/// Reads a surface from the bytes of a file: OBJ (polygons, texture coordinates and normals ignored), PLY (ASCII,
-/// binary little and big endian), STL (ASCII, binary; equal points are merged). Polygons are cut into triangles; vertex
-/// order is the file's.
+/// Reads a surface from the bytes of a file: OBJ (polygons, texture coordinates and normals
+/// ignored), PLY (ASCII, binary little and big endian), STL (ASCII, binary; equal points are
+/// merged). Polygons are cut into triangles; vertex order is the file's.
 /// @param metres_per_unit  0.001 for a file in millimetres
-/// INVALID_ARGUMENT, saying where in the file and what was found there, for a file that is empty, cut short, of another
-/// format, holds numbers that are not finite or indices out of range, has no triangle, or is outside the limits. Never
-/// throws, never reserves more memory than a small multiple of the file's own size. Checked by
-/// tests/unit/geometry/surface_reader_test.cc.
+/// INVALID_ARGUMENT, saying where in the file and what was found there, for a file that is empty,
+/// cut short, of another format, holds numbers that are not finite or indices out of range, has no
+/// triangle, or is outside the limits. Never throws, never reserves more memory than a small
+/// multiple of the file's own size. Checked by tests/unit/geometry/surface_reader_test.cc.
 absl::StatusOr<SurfaceMesh> read_surface(std::string_view bytes, SurfaceFormat format, double metres_per_unit,
                                          const SurfaceLimits& limits = {});
 

@@ -110,8 +110,9 @@ int side_from(const std::array<int, 3>& triangle, int vertex) {
   return -1;
 }
 
-/// The border side that starts where side (t, k) ends, reached by turning round that vertex; -1 where the turn does not
-/// come to a border, as beside an edge of triangles that disagree on their direction.
+/// The border side that starts where side (t, k) ends, reached by turning round that vertex; -1
+/// where the turn does not come to a border, as beside an edge of triangles that disagree on their
+/// direction.
 std::pair<int, int> next_border_side(const SurfaceMesh& mesh, const Across& across, int t, int k) {
   const int pivot = mesh.triangles[t][(k + 1) % 3];
   int side = (k + 1) % 3;

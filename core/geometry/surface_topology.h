@@ -12,7 +12,8 @@ namespace lipofill::geometry {
 /// position that is not finite or a triangle of a vertex that is not there.
 absl::Status check_indices(const char* field, const SurfaceMesh& mesh);
 
-/// One side of a triangle: side k runs from corner k to corner k + 1. `low` < `high` are its vertices.
+/// One side of a triangle: side k runs from corner k to corner k + 1. `low` < `high` are its
+/// vertices.
 struct EdgeUse {
   int low = 0;
   int high = 0;
@@ -20,10 +21,12 @@ struct EdgeUse {
   int side = 0;
 };
 
-/// All sides of all triangles, those of one edge next to each other, ordered by (low, high, triangle, side).
+/// All sides of all triangles, those of one edge next to each other, ordered by (low, high,
+/// triangle, side).
 std::vector<EdgeUse> sort_edge_uses(const SurfaceMesh& mesh);
 
-/// The triangle across each side of each triangle; -1 at a border and at an edge of more than two triangles.
+/// The triangle across each side of each triangle; -1 at a border and at an edge of more than two
+/// triangles.
 using Across = std::vector<std::array<int, 3>>;
 
 struct TriangleNeighbours {
@@ -41,8 +44,8 @@ struct Components {
 
 Components label_components(const Across& across);
 
-/// Closed chains of border edges, each as its vertices in the direction of the triangles beside it. At a vertex where
-/// several borders meet each border is followed round its own fan of triangles.
+/// Closed chains of border edges, each as its vertices in the direction of the triangles beside it.
+/// At a vertex where several borders meet each border is followed round its own fan of triangles.
 std::vector<std::vector<int>> trace_boundary_loops(const SurfaceMesh& mesh, const Across& across);
 
 /// True for repeated corners, or an area that rounding could have made.
@@ -51,7 +54,8 @@ bool is_degenerate(const SurfaceMesh& mesh, const std::array<int, 3>& triangle);
 /// Twice the area times the outward normal [m2].
 Eigen::Vector3d compute_area_vector(const SurfaceMesh& mesh, const std::array<int, 3>& triangle);
 
-/// Normals of the vertices, weighted by the angles of the triangles around them; zero where no triangle is.
+/// Normals of the vertices, weighted by the angles of the triangles around them; zero where no
+/// triangle is.
 Eigen::Matrix3Xd compute_vertex_normals(const SurfaceMesh& mesh);
 
 /// The part of `mesh` made of `triangles` (ascending), its vertices renumbered in their old order.

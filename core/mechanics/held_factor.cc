@@ -13,12 +13,14 @@ namespace {
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 /// A session that needs more would crowd out the others.
 constexpr double kMaxFactorBytes = 4.0 * kGibibyte;
-/// Films on tissue of more cells have no dense compliance: it would take longer than the solves that it saves, and more
-/// memory than the factor.
+/// Films on tissue of more cells have no dense compliance: it would take longer than the solves
+/// that it saves, and more memory than the factor.
 constexpr int kMaxDenseCells = 16384;
-/// Iterations with a factor of earlier positions, beyond those that a new one would need, that cost as much as it does.
+/// Iterations with a factor of earlier positions, beyond those that a new one would need, that cost
+/// as much as it does.
 constexpr int kLateIterationsOfAFactor = 6;
-/// Share of a load that a float32 solve may leave: well below what an iteration with a factor of its own positions may.
+/// Share of a load that a float32 solve may leave: well below what an iteration with a factor of
+/// its own positions may.
 constexpr double kFactorTolerance = 1e-3;
 
 }  // namespace
@@ -89,7 +91,8 @@ HeldFactor::TakenUp HeldFactor::take_up(const SimulationState& state) {
   return is_made ? TakenUp::kMade : TakenUp::kImpossible;
 }
 
-/// The share that a solve leaves of a load which bends and shears all there is: pressure in every film, and weight.
+/// The share that a solve leaves of a load which bends and shears all there is: pressure in every
+/// film, and weight.
 double HeldFactor::measure_error() {
   const solid::Tissue& tissue = system_.tissue();
   Trial& t = trial_;

@@ -5,8 +5,8 @@
 
 namespace lipofill::mechanics {
 
-/// CPU time of a step by phase [s], on its thread, tries that were taken back included: what it costs, however busy the
-/// machine. What is left of the total is bookkeeping.
+/// CPU time of a step by phase [s], on its thread, tries that were taken back included: what it
+/// costs, however busy the machine. What is left of the total is bookkeeping.
 struct StepTimes {
   double element = 0.0;   ///< forces and stiffness of the tissue
   double factor = 0.0;    ///< factorisation, compliance and preconditioner
@@ -30,8 +30,8 @@ struct StepCost {
   StepTimes times;
   int factorisations = 0;
   int tissue_solves = 0;
-  int film_iterations = 0;       ///< on the thickness
-  int newton_iterations = 0;     ///< of tissue and films together
+  int film_iterations = 0;       ///< counts those on the thickness
+  int newton_iterations = 0;     ///< counts those of tissue and films together
   int iterative_iterations = 0;  ///< conjugate gradients on J + C
   int fallbacks = 0;             ///< float64 in place of float32, a direct solve in place of an iterative one
 };

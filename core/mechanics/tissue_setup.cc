@@ -34,8 +34,8 @@ class SupportBuilder {
     }
   }
 
-  /// Quadrilaterals of the side i = 0 or n_xi (`along_eta`) or j = 0 or n_eta; through all levels, both copies of
-  /// doubled nodes.
+  /// Quadrilaterals of the side i = 0 or n_xi (`along_eta`) or j = 0 or n_eta; through all levels,
+  /// both copies of doubled nodes.
   std::vector<std::array<int, 4>> side(bool along_eta, bool high) const {
     std::vector<std::array<int, 4>> quads;
     const int count = along_eta ? grid_.n_eta : grid_.n_xi;
@@ -49,7 +49,8 @@ class SupportBuilder {
     return quads;
   }
 
-  /// Quadrilaterals of the deep face that rest on the base; where a film lies on the base the tissue is free of it.
+  /// Quadrilaterals of the deep face that rest on the base; where a film lies on the base the
+  /// tissue is free of it.
   std::vector<std::array<int, 4>> base() const {
     std::vector<std::array<int, 4>> quads;
     const int level = grid_.n_levels() - 1;

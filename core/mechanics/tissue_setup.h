@@ -14,8 +14,8 @@
 
 namespace lipofill::mechanics {
 
-/// The model's hexahedra, split where the films lie, and how their nodes are held: what there is to build a tissue
-/// from.
+/// The model's hexahedra, split where the films lie, and how their nodes are held: what there is to
+/// build a tissue from.
 struct HeldMesh {
   coupling::SplitMesh split;
   solid::NodeSupports supports;
@@ -23,7 +23,7 @@ struct HeldMesh {
   std::vector<int> skin_nodes;             ///< (nodes_per_level)
 };
 
-/// Only for a model with layers.
+/// Opens the films in a model's mesh and holds it. The model must have layers.
 HeldMesh hold_mesh(const model::FaceModel& model, const std::vector<plan::FilmLayout>& films);
 
 /// The tissue of a held mesh.
@@ -32,10 +32,10 @@ struct TissueSetup {
   std::vector<coupling::WallNodes> walls;  ///< a film on tissue, in the order of the films
   std::vector<int> skin_nodes;             ///< (nodes_per_level)
   std::vector<LigamentLayout> ligaments;
-  std::string key;  ///< of the tissue's structure (shared_parts.h)
+  std::string key;  ///< names the tissue's structure (shared_parts.h)
 };
 
-/// Only for a model with layers. Field violations of the plan's ligaments.
+/// Makes the tissue of a model, which must have layers. Field violations of the plan's ligaments.
 absl::StatusOr<TissueSetup> set_up_tissue(const model::FaceModel& model, const std::vector<plan::FilmLayout>& films,
                                           const plan::SimulationSpec& spec);
 

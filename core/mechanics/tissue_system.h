@@ -13,22 +13,23 @@
 
 namespace lipofill::mechanics {
 
-/// The tissue and the gaps of the films on it, as functions of the nodes' positions x and of the springs that are
-/// intact: forces f_int(x), stiffness K(x), gap volumes g(x) and their derivative B = dg/dx. Inertia and damping are
-/// terms of whoever moves the tissue. It computes what it is asked for again only where positions or springs have
-/// changed.
+/// The tissue and the gaps of the films on it, as functions of the nodes' positions x and of the
+/// springs that are intact: forces f_int(x), stiffness K(x), gap volumes g(x) and their derivative
+/// B = dg/dx. Inertia and damping are terms of whoever moves the tissue. It computes what it is
+/// asked for again only where positions or springs have changed.
 /// Checked by tests/unit/mechanics/tissue_system_test.cc.
 class TissueSystem {
  public:
-  /// For a model with layers. Field violations of the plan's ligaments, or of a zone that no free node can open.
+  /// For a model with layers. Field violations of the plan's ligaments, or of a zone that no free
+  /// node can open.
   /// @param cost  takes the time of the elements; outlives the system
   static absl::StatusOr<std::unique_ptr<TissueSystem>> create(const model::FaceModel& model,
                                                               const std::vector<plan::FilmLayout>& films,
                                                               const FilmCells& cells, const plan::SimulationSpec& spec,
                                                               StepCost& cost);
 
-  /// Brings forces to positions [m] (3, n_nodes) and springs (1: intact, 0: broken); the stiffness as well where the
-  /// damping asks for it, for steps of `dt` [s].
+  /// Brings forces to positions [m] (3, n_nodes) and springs (1: intact, 0: broken); the stiffness
+  /// as well where the damping asks for it, for steps of `dt` [s].
   void bring_forces_to(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& springs, double dt);
   /// Brings forces, S = M/dt^2 + D/dt + K and the gaps with their derivative there.
   void assemble(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& springs, double dt);

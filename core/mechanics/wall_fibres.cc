@@ -158,7 +158,8 @@ std::vector<double> share_area(const geometry::LayeredGrid& grid, const coupling
   return area;
 }
 
-/// Connective tissue and the attachment at the edge of zones: both hold the two copies of an open node together.
+/// Connective tissue and the attachment at the edge of zones: both hold the two copies of an open
+/// node together.
 void add_fibres_of_nodes(const model::FaceModel& model, const FilmOnTissue& film, const solid::HexMesh& mesh,
                          WallFibres& fibres) {
   const double stiffness = film.film->connective_tissue.stiffness;

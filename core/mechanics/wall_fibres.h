@@ -18,10 +18,11 @@ struct LigamentLayout {
   std::string name;
   int first_spring = 0;
   int n_springs = 0;
-  double breaking_force = 0.0;  ///< of each spring [N]; infinity: it holds
+  double breaking_force = 0.0;  ///< each spring breaks at it [N]; infinity: it holds
 };
 
-/// Springs across the films of a tissue: ligaments first, then the fibres of connective tissue and of attachments.
+/// Springs across the films of a tissue: ligaments first, then the fibres of connective tissue and
+/// of attachments.
 struct WallFibres {
   std::vector<solid::WallSpring> springs;
   std::vector<LigamentLayout> ligaments;
@@ -33,11 +34,12 @@ struct FilmOnTissue {
   const coupling::WallNodes* nodes = nullptr;
 };
 
-/// Joins the walls of films: a spring at each point of a ligament, bilinear between the nodes around it, and one
-/// between the two copies of every open node, its stiffness that of connective tissue times the node's share of area and
-/// that of the attachment at the edge of the zones (plan/zone_bond.h).
-/// Field violations are named below "ligaments[index]". Checked by tests/verification/coupling/ligament_test.cc and
-/// tests/unit/simulation/anatomy_input_test.cc.
+/// Joins the walls of films: a spring at each point of a ligament, bilinear between the nodes
+/// around it, and one between the two copies of every open node, its stiffness that of connective
+/// tissue times the node's share of area and that of the attachment at the edge of the zones
+/// (plan/zone_bond.h).
+/// Field violations are named below "ligaments[index]". Checked by
+/// tests/verification/coupling/ligament_test.cc and tests/unit/simulation/anatomy_input_test.cc.
 absl::StatusOr<WallFibres> place_wall_fibres(const model::FaceModel& model, const std::vector<FilmOnTissue>& films,
                                              const std::vector<plan::LigamentSpec>& ligaments,
                                              const solid::HexMesh& mesh);

@@ -123,8 +123,8 @@ absl::StatusOr<geometry::FaceGeometrySpec> make_geometry_spec(const FaceModelSpe
   return geometry_spec;
 }
 
-/// The charted skin, without the layers: their thickness depends on where they lie. Everything wrong with the layers is
-/// told before the scan is worked on.
+/// The charted skin, without the layers: their thickness depends on where they lie. Everything
+/// wrong with the layers is told before the scan is worked on.
 absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec, const geometry::Progress& progress) {
   auto geometry_spec = make_geometry_spec(spec);
   if (!geometry_spec.ok()) return geometry_spec.status();
@@ -135,8 +135,9 @@ absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec, con
   });
 }
 
-/// Adds advice to the error when layers fold: what else may be the cause, and what the caller can change. Over a rough
-/// scan the roughness is the first cause to look at; a thickness that follows the bone has two more parameters.
+/// Adds advice to the error when layers fold: what else may be the cause, and what the caller can
+/// change. Over a rough scan the roughness is the first cause to look at; a thickness that follows
+/// the bone has two more parameters.
 absl::Status with_advice(const absl::Status& status, const geometry::FaceGeometry& face,
                          const LayerThickness& thickness) {
   if (!absl::IsFailedPrecondition(status)) return status;

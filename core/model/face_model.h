@@ -30,11 +30,11 @@ struct DownToBone {
 
 struct TissueLayerSpec {
   std::string name;
-  geometry::LayerGeometry geometry;  ///< in a built model, the thickness it has
+  geometry::LayerGeometry geometry;  ///< a built model has the thickness it came to
   solid::ElasticMaterial material;
   std::optional<anatomy::TissueKind> kind = std::nullopt;
   bool regional_thickness = false;  ///< published figures of the kind in some regions, the thickness outside
-  std::optional<DownToBone> down_to_bone = std::nullopt;  ///< in place of the thickness
+  std::optional<DownToBone> down_to_bone = std::nullopt;  ///< it takes the place of the thickness
 };
 
 /// A disc of skin that a model is to hold.
@@ -73,7 +73,7 @@ struct ThicknessRange {
 struct BoneFinding {
   double measured_share = 0.0;  ///< where a ray met bone
   double limited_share = 0.0;   ///< where the layer ends above the bone, at its greatest thickness
-  ThicknessRange depth;         ///< from the skin
+  ThicknessRange depth;         ///< the depths count from the skin
 };
 
 struct SharedParts;
@@ -85,11 +85,11 @@ struct FaceModel {
   std::vector<TissueLayerSpec> layers;
   Support rim;
   Support base;
-  std::vector<ThicknessRange> thickness;  ///< of each layer
+  std::vector<ThicknessRange> thickness;  ///< there is a range for each layer
   std::optional<BoneFinding> bone;
   bool is_square = false;
   std::string content_hash;                                   ///< SHA-256 of everything a simulation depends on
-  std::shared_ptr<SharedParts> shared = make_shared_parts();  ///< of its simulations (shared_parts.h)
+  std::shared_ptr<SharedParts> shared = make_shared_parts();  ///< its simulations share them (shared_parts.h)
 };
 
 /// Builds the model. INVALID_ARGUMENT with field violations named as in lipofill.v1.ModelSpec,

@@ -20,10 +20,11 @@ struct LayerThickness {
   std::optional<BoneFinding> bone;
 };
 
-/// Thickness of a specification's layers under a charted skin: the layer's own field, the regional figures of its kind,
-/// or what the other layers leave of the distance to the bone. The field of layers that ask for neither stays as it is.
-/// INVALID_ARGUMENT with violations of layers[k].regional_thickness and layers[k].down_to_bone that say where it does
-/// not fit; FAILED_PRECONDITION where no bone is found. Checked by tests/unit/model/layer_thickness_test.cc.
+/// Thickness of a specification's layers under a charted skin: the layer's own field, the regional
+/// figures of its kind, or what the other layers leave of the distance to the bone. The field of
+/// layers that ask for neither stays as it is. INVALID_ARGUMENT with violations of
+/// layers[k].regional_thickness and layers[k].down_to_bone that say where it does not fit;
+/// FAILED_PRECONDITION where no bone is found. Checked by tests/unit/model/layer_thickness_test.cc.
 absl::StatusOr<LayerThickness> find_layer_thickness(const geometry::FaceGeometry& face, const FaceModelSpec& spec);
 
 }  // namespace lipofill::model

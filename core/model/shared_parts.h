@@ -15,7 +15,8 @@ namespace lipofill::model {
 /// Parts that all simulations of a model share as long as one of them lives: element matrices and
 /// patterns, the places of the gaps on the tissue, the analysis of the factorisation. None of it is
 /// written once it is made, and it is the same whoever makes it first: results do not depend on the
-/// sharing. Young's moduli are no part of them, so that tissues of other stiffness share them too. Thread-safe. Checked by tests/unit/model/shared_parts_test.cc.
+/// sharing. Young's moduli are no part of them, so that tissues of other stiffness share them too.
+/// Thread-safe. Checked by tests/unit/model/shared_parts_test.cc.
 struct SharedParts {
   SharedCache<solid::TissueStructure> tissues;
   SharedCache<coupling::GapGeometry> gaps;

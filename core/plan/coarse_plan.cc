@@ -17,7 +17,8 @@ using geometry::ChartPoint;
 using geometry::LayeredGrid;
 using geometry::ScalarField;
 
-/// Divisions of a film for every one of the tissue are at least this: film_layout.cc refuses finer cells.
+/// Divisions of a film for every one of the tissue are at least this: film_layout.cc refuses finer
+/// cells.
 constexpr int kLeastHexahedraAcross = 2;
 
 /// An even number, so that films over the whole chart end where it does.
@@ -62,8 +63,8 @@ struct Side {
   int n = 0;
 };
 
-/// The side that was [low, high] in `n` cells over `n_fine` hexahedra of the chart. It grows rather than shrinks to
-/// hold whole cells, and stays in the chart.
+/// The side that was [low, high] in `n` cells over `n_fine` hexahedra of the chart. It grows rather
+/// than shrinks to hold whole cells, and stays in the chart.
 Side coarsen_side(double low, double high, int n, int n_fine, int n_coarse) {
   const double fine_across = (high - low) * n_fine / n;
   const int across = std::clamp(static_cast<int>(std::lround(fine_across)), kLeastHexahedraAcross, n_coarse);
@@ -82,8 +83,8 @@ Side coarsen_free_side(double low, double high, int n) {
   return {low, high, std::max(1, static_cast<int>(std::lround(n / kPreviewCoarsening)))};
 }
 
-/// Means of a field over boxes of a film's cell size around points half a cell apart, which the cells' centres are
-/// among.
+/// Means of a field over boxes of a film's cell size around points half a cell apart, which the
+/// cells' centres are among.
 ScalarField average_over_cells(const ScalarField& field, double width_xi, double width_eta) {
   if (field.values.size() == 1) return field;
   constexpr int kSamples = 8;
@@ -124,7 +125,8 @@ FilmSpec coarsen_film(const FilmSpec& spec, const LayeredGrid& fine, const Layer
   return film;
 }
 
-/// The centre of the zone's cell that is nearest to a site; the site itself where the zone has no cell.
+/// The centre of the zone's cell that is nearest to a site; the site itself where the zone has no
+/// cell.
 ChartPoint move_into_zone(const model::FaceModel& coarse, const std::vector<FilmSpec>& films, const std::string& zone,
                           const ChartPoint& site) {
   ChartPoint nearest = site;

@@ -48,7 +48,8 @@ void check_connective_tissue(const FilmSpec& spec, FieldViolations& violations) 
   }
 }
 
-/// One pressure a cell cannot hold a wall whose quadrilaterals are as fine as the cells: it would ripple between them.
+/// One pressure a cell cannot hold a wall whose quadrilaterals are as fine as the cells: it would
+/// ripple between them.
 void check_coarseness(const char* field, double span, int n_film, int n_tissue, FieldViolations& violations) {
   const double ratio = span * n_tissue / n_film;
   if (ratio >= kCoarsestRatio - 1e-9) return;

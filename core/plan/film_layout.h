@@ -18,14 +18,14 @@ namespace lipofill::plan {
 struct FilmLayout {
   std::string name;
   film::FilmGrid grid;
-  std::vector<std::string> zone_names;  ///< by index in FilmGrid::zone_of_cell
+  std::vector<std::string> zone_names;  ///< FilmGrid::zone_of_cell has the index
   FilmWallKind wall = FilmWallKind::kTissue;
   double wall_stiffness = 0.0;  ///< [Pa/m]
   film::WallFriction wall_friction = film::WallFriction::kNoSlip;
-  int level = -1;  ///< of the tissue, kTissue only
+  int level = -1;  ///< the tissue opens at this level, kTissue only
   geometry::ScalarField rest_thickness;
   geometry::ScalarField initial_thickness;
-  film::WalledSlots walled_slots;  ///< on both sides of walls inside zones
+  film::WalledSlots walled_slots;  ///< they lie on both sides of walls inside zones
   ConnectiveTissueSpec connective_tissue;
   std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< of each zone, on the chart
   std::vector<film::CellPiece> pieces;                       ///< on the quadrilaterals of the tissue, kTissue only
@@ -36,9 +36,10 @@ struct FilmLayout {
   geometry::ChartPoint cell_centre(int cell) const;
 };
 
-/// Decides which cells belong to which zone and where in the tissue the film lies. On a face a named region or a disc
-/// with less than 0.98 of its area on the film is remarked upon, and refused below 0.6. Field violations are named below
-/// "films[index]", values in the units of lipofill.v1.Film.
+/// Decides which cells belong to which zone and where in the tissue the film lies. On a face a
+/// named region or a disc with less than 0.98 of its area on the film is remarked upon, and refused
+/// below 0.6. Field violations are named below "films[index]", values in the units of
+/// lipofill.v1.Film.
 absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmSpec& spec);
 
 /// Positions on the undeformed skin over the vertices of a film's grid [m] (3, n_vertices).

@@ -16,9 +16,10 @@ struct PlacedWalls {
   std::vector<std::pair<std::pair<int, int>, double>> leaky;  ///< leakage [m2/(Pa s)], > 0
 };
 
-/// Finds the pairs of neighbouring slots that the film's walls part: those whose centres lie on the two sides of a
-/// path, and those of two zones that touch. Field violations are named below "walls[index]". Checked by
-/// tests/unit/simulation/anatomy_input_test.cc and tests/verification/film/walls_test.cc.
+/// Finds the pairs of neighbouring slots that the film's walls part: those whose centres lie on the
+/// two sides of a path, and those of two zones that touch. Field violations are named below
+/// "walls[index]". Checked by tests/unit/simulation/anatomy_input_test.cc and
+/// tests/verification/film/walls_test.cc.
 absl::StatusOr<PlacedWalls> place_walls(const model::FaceModel& model, const FilmSpec& spec,
                                         const std::vector<int>& zone_of_slot);
 

@@ -33,8 +33,9 @@ class InjectionSchedule {
                                         const InjectionSpec& spec, double now) const;
   void add(PlacedInjection injection);
 
-  /// Volume that each cell of each film receives between `time` and `time + dt`, and notes it as delivered [m3]. No
-  /// more is taken out of a cell than nearly all that it holds; the rest stays due. A film between rigid walls stays full.
+  /// Volume that each cell of each film receives between `time` and `time + dt`, and notes it as
+  /// delivered [m3]. No more is taken out of a cell than nearly all that it holds; the rest stays
+  /// due. A film between rigid walls stays full.
   /// @param held  volume of fat in a cell of a film now [m3]
   void deliver(const std::vector<FilmLayout>& films, absl::FunctionRef<double(int film, int cell)> held, double time,
                double dt, std::vector<Eigen::VectorXd>& received);

@@ -25,10 +25,12 @@ struct PlacedPlan {
   std::vector<ProbePlace> probes;
 };
 
-/// Checks a plan and places its films, injections and probes on a model. It goes on after what is wrong, so that
-/// everything can be mended at once: only what lies in a film that has no place itself is left out.
+/// Checks a plan and places its films, injections and probes on a model. It goes on after what is
+/// wrong, so that everything can be mended at once: only what lies in a film that has no place
+/// itself is left out.
 ///
-/// INVALID_ARGUMENT with field violations named as in lipofill.v1.SimulationSpec, CANCELLED once it is unwanted.
+/// INVALID_ARGUMENT with field violations named as in lipofill.v1.SimulationSpec, CANCELLED once it
+/// is unwanted.
 /// Checked by tests/unit/plan/plan_placement_test.cc.
 absl::Status place_plan(const model::FaceModel& model, const SimulationSpec& spec, const Unwanted& unwanted,
                         PlacedPlan& placed);

@@ -43,15 +43,15 @@ struct ZoneSpec {
 /// A wall of a film: a line through its zones, or where two of its zones touch.
 struct WallSpec {
   std::string name;
-  std::vector<geometry::SkinPoint> path;  ///< at least two points; empty: `between`
+  std::vector<geometry::SkinPoint> path;  ///< has at least two points; `between` counts where it is empty
   std::array<std::string, 2> between;     ///< names of two zones
   double leakage = 0.0;                   ///< flux per length and pressure difference [m2/(Pa s)]; 0: tight
 };
 
 /// Fibres that hold the walls of a film together.
 struct ConnectiveTissueSpec {
-  double stiffness = 0.0;       ///< of the fibres, per area [Pa/m]; 0: none
-  double entry_pressure = 0.0;  ///< of the fat beside a cell that it has not entered, above which it does [Pa]; 0: open
+  double stiffness = 0.0;       ///< the fibres have it per area [Pa/m]; 0: there are none
+  double entry_pressure = 0.0;  ///< fat beside the cell enters it above this pressure [Pa]; 0: it is open
 };
 
 /// How the outlines of a film's zones become cells.
@@ -60,9 +60,10 @@ enum class ZoneOutline {
   kCells,  ///< as the paper has it: the cells whose centres lie inside, whole
 };
 
-/// Tissue that attaches the walls of a film to one another around its zones. Its stiffness per area grows linearly from
-/// 0 on the outline to `stiffness` at a distance of `width`, beyond which the layers are bonded. Where two zones touch,
-/// a septum of the same width and stiffness stands on their border.
+/// Tissue that attaches the walls of a film to one another around its zones. Its stiffness per area
+/// grows linearly from 0 on the outline to `stiffness` at a distance of `width`, beyond which the
+/// layers are bonded. Where two zones touch, a septum of the same width and stiffness stands on
+/// their border.
 struct AttachmentSpec {
   double stiffness = 0.0;  ///< [Pa/m]
   double width = 0.0;      ///< [m]
@@ -102,9 +103,9 @@ struct LigamentSpec {
   std::string film;        ///< the outermost film it crosses; empty: the first on tissue
   std::string inner_film;  ///< the innermost; empty: the same
   std::variant<std::vector<geometry::SkinPoint>, NamedLigament> place;
-  std::optional<double> stiffness;       ///< of each point [N/m]; a named ligament has its own
+  std::optional<double> stiffness;       ///< each point has it [N/m]; a named ligament has its own
   double slack = 0.0;                    ///< [m]
-  std::optional<double> breaking_force;  ///< of each point [N]; none: it holds
+  std::optional<double> breaking_force;  ///< each point breaks at it [N]; without one it holds
 };
 
 struct InjectionSpec {
@@ -127,7 +128,7 @@ struct SimulationSpec {
   double fat_density = 920.0;               ///< [kg/m3]
   double fat_flow_index = 1.0;              ///< n; then fat_viscosity is the consistency [Pa s^n]
   double fat_yield_stress = 0.0;            ///< [Pa]
-  std::optional<double> fat_shear_modulus;  ///< of a Maxwell element [Pa]
+  std::optional<double> fat_shear_modulus;  ///< the fat is a Maxwell element with it [Pa]
   std::optional<double> suction_limit;      ///< a void opens in the film below minus this pressure [Pa]
   std::vector<FilmSpec> films;
   std::vector<InjectionSpec> injections;
@@ -143,7 +144,7 @@ struct SimulationSpec {
   double damping_stiffness = 0.0;                     ///< beta [s]
   std::vector<ProbeSpec> probes;
   std::vector<LigamentSpec> ligaments;
-  double error_tolerance = 0.02e-3;  ///< of a step longer than `step`, on skin and thickness [m]
+  double error_tolerance = 0.02e-3;  ///< bounds skin and thickness in a step longer than `step` [m]
 };
 
 }  // namespace lipofill::plan

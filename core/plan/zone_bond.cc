@@ -157,7 +157,8 @@ class BondBuilder {
     bond_.stiffness.assign(grid_.nodes_per_level(), 0.0);
   }
 
-  /// @param least_cover  share of a quadrilateral that a zone has to have for the layers to part there
+  /// @param least_cover  share of a quadrilateral that a zone has to have for the layers to part
+  ///                     there
   void part_zones_rigidly(double least_cover) {
     open_places([&](int i, int j) {
       std::set<int> zones;

@@ -10,7 +10,8 @@
 
 namespace lipofill::plan {
 
-/// How the two walls of a film on tissue hold together, by the places of its level (nodes_per_level).
+/// How the two walls of a film on tissue hold together, by the places of its level
+/// (nodes_per_level).
 struct ZoneBond {
   std::vector<bool> open;         ///< the place has a node on each wall; elsewhere the layers share one
   std::vector<double> stiffness;  ///< of the attachment between the two [N/m]
@@ -24,14 +25,15 @@ bool has_rigid_edge(const model::FaceModel& model, const ZoneEdgeSpec& edge);
 
 /// Bonds the layers outside the zones and along walls inside them.
 ///
-/// An attachment of stiffness k(x) per area goes to the open places in shares int k N_a dA, N_a bilinear. Outside the
-/// zones k = k1 d/w at a distance d along the skin from the nearest outline, and the layers share their nodes from d = w
-/// on. Inside a zone a neighbour at a distance d < w/2 adds the septum between them, k1 (1 - 2 d/w).
+/// An attachment of stiffness k(x) per area goes to the open places in shares int k N_a dA, N_a
+/// bilinear. Outside the zones k = k1 d/w at a distance d along the skin from the nearest outline,
+/// and the layers share their nodes from d = w on. Inside a zone a neighbour at a distance d < w/2
+/// adds the septum between them, k1 (1 - 2 d/w).
 ///
-/// Rigid edges open the places whose four quadrilaterals all belong to one zone, the one with the largest part of each,
-/// and tie them by what those
-/// quadrilaterals have outside the outline with the stiffness of the tissue, E/L with L the side of a quadrilateral: the
-/// place where the layers part moves with the outline, not by quadrilaterals.
+/// Rigid edges open the places whose four quadrilaterals all belong to one zone, the one with the
+/// largest part of each, and tie them by what those
+/// quadrilaterals have outside the outline with the stiffness of the tissue, E/L with L the side of
+/// a quadrilateral: the place where the layers part moves with the outline, not by quadrilaterals.
 /// Checked by tests/unit/plan/zone_bond_test.cc and tests/verification/coupling/zone_edge_test.cc.
 ZoneBond bond_around_zones(const model::FaceModel& model, const FilmSpec& spec, int level, const film::FilmGrid& grid,
                            const std::vector<film::CellPiece>& pieces, const film::WalledSlots& walled_slots,

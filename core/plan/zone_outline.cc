@@ -7,7 +7,8 @@
 namespace lipofill::plan {
 namespace {
 
-/// The directed edges between a zone and what is not of it, by the vertex they begin at; the zone lies to their left.
+/// The directed edges between a zone and what is not of it, by the vertex they begin at; the zone
+/// lies to their left.
 using Border = std::map<int, std::vector<int>>;
 
 int zone_at(const film::FilmGrid& grid, int i, int j) {

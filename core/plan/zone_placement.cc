@@ -18,7 +18,8 @@ using film::SlotCover;
 using geometry::ChartPoint;
 using geometry::Level;
 
-/// Share of a slot that makes a cell of its own: thinner ones would have pressures of hardly any weight.
+/// Share of a slot that makes a cell of its own: thinner ones would have pressures of hardly any
+/// weight.
 constexpr double kLeastOfCell = 0.25;
 
 double share_of(const SlotCover& cover) {
@@ -45,7 +46,8 @@ double least_at(const Shape& shape, const ChartPoint& p) {
   return least;
 }
 
-/// Levels that are all positive where a zone is inside its shape and outside those of earlier zones.
+/// Levels that are all positive where a zone is inside its shape and outside those of earlier
+/// zones.
 std::vector<Level> levels_of_own_part(const std::vector<Shape>& shapes, size_t zone) {
   std::vector<Level> levels = shapes[zone];
   for (size_t earlier = 0; earlier < zone; ++earlier) {
@@ -110,8 +112,8 @@ class Covers {
   std::vector<std::vector<SlotCover>> of_zone_;
 };
 
-/// The slot beside this one whose cell takes a fragment of the zone: the one that the zone covers most, a neighbour
-/// across a side before one across a corner; -1: there is none.
+/// The slot beside this one whose cell takes a fragment of the zone: the one that the zone covers
+/// most, a neighbour across a side before one across a corner; -1: there is none.
 int find_taker(const FilmSpec& spec, const PlacedZones& placed, int slot, int zone) {
   const int i = slot % spec.n_xi;
   const int j = slot / spec.n_xi;

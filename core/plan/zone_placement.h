@@ -24,15 +24,17 @@ struct PlacedZones {
   double uncounted = 0.0;                                    ///< slots' worth of zones that no cell could take
 };
 
-/// Finds the cells of each zone. Where zones overlap the earlier one has the place. With ZoneOutline::kCurve the
-/// outlines cut the slots they cross; a slot of which a zone covers less than a quarter, or less than another zone,
-/// counts as part of the zone's cell beside it. Field violations are named "zones[index]" and below; remarks say
-/// what of a zone lies outside the film. Checked by
+/// Finds the cells of each zone. Where zones overlap the earlier one has the place. With
+/// ZoneOutline::kCurve the outlines cut the slots they cross; a slot of which a zone covers less
+/// than a quarter, or less than another zone, counts as part of the zone's cell beside it. Field
+/// violations are named "zones[index]" and below; remarks say what of a zone lies outside the film.
+/// Checked by
 /// tests/unit/plan/zone_placement_test.cc.
 PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, FieldViolations& violations,
                         std::vector<std::string>& remarks);
 
-/// Gives each piece of a cell its share inside the outline of the cell's zone and leaves out those without any.
+/// Gives each piece of a cell its share inside the outline of the cell's zone and leaves out those
+/// without any.
 std::vector<film::CellPiece> cut_at_outlines(std::vector<film::CellPiece> pieces, const film::FilmGrid& grid,
                                              const PlacedZones& zones);
 

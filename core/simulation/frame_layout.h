@@ -9,9 +9,10 @@
 
 namespace lipofill::simulation {
 
-/// A vertex that moves with the skin, between four of its nodes, and the cell of the outermost film below it.
+/// A vertex that moves with the skin, between four of its nodes, and the cell of the outermost film
+/// below it.
 struct SkinPoint {
-  int vertex = 0;  ///< of the mesh that it belongs to
+  int vertex = 0;  ///< counts in the mesh that it belongs to
   std::array<int, 4> nodes{};
   std::array<double, 4> weights{};
   int film = -1;  ///< -1: none below
@@ -22,8 +23,8 @@ struct SkinPoint {
 struct FrameLayout {
   std::vector<SkinPoint> skin;
   std::vector<SkinPoint> scan;                      ///< those of its vertices that move
-  std::vector<std::vector<int>> film_vertices;      ///< of each film's grid, those that cells touch, in order
-  std::vector<std::vector<uint32_t>> film_corners;  ///< of each film's cells, four each, among film_vertices
+  std::vector<std::vector<int>> film_vertices;      ///< each film has those of its grid that cells touch, in order
+  std::vector<std::vector<uint32_t>> film_corners;  ///< each film's cells have four each, among film_vertices
 };
 
 /// @param skin  of the simulation whose films these are

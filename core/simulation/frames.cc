@@ -70,8 +70,8 @@ std::vector<float> select_moved(const Eigen::Matrix3Xd& from, const Eigen::Matri
 struct Simulation::Impl::FilmsNow {
   std::vector<film::FilmMetric> metric;
   std::vector<Eigen::VectorXd> thickness;  ///< [m] (n_cells)
-  std::vector<Eigen::VectorXd> zone;       ///< of each cell, counted from 1 through the films in order
-  std::vector<const Eigen::VectorXd*> pressures, thicknesses, zones;  ///< of each film
+  std::vector<Eigen::VectorXd> zone;       ///< each cell has one, counted from 1 through the films in order
+  std::vector<const Eigen::VectorXd*> pressures, thicknesses, zones;  ///< each film has one
 };
 
 Simulation::Impl::FilmsNow Simulation::Impl::measure_films() const {

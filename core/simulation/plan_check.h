@@ -25,19 +25,21 @@ struct PlacedZone {
 
 /// What can be said of a plan on a model before its tissue is set up.
 struct PlanCheck {
-  /// Everything for which Simulation::create would refuse the plan, but for what only the tissue at work shows: an
-  /// initial thickness that it cannot open to.
+  /// Everything for which Simulation::create would refuse the plan, but for what only the tissue at
+  /// work shows: an initial thickness that it cannot open to.
   std::vector<FieldViolation> violations;
   /// What a simulation of the plan would do that its author may not have meant.
   std::vector<FieldViolation> remarks;
   std::vector<PlacedZone> zones;  ///< those that could be placed
-  /// Number of the zone of the outermost film under each node of the skin; 0: none. (nodes_per_level)
+  /// Number of the zone of the outermost film under each node of the skin; 0: none.
+  /// (nodes_per_level)
   std::vector<int> zone_under_skin;
 };
 
-/// Checks a plan on a model and finds where its zones are: no factor is analysed and no step is taken. Fields are named
-/// as in lipofill.v1.SimulationSpec. CANCELLED once it is unwanted. Checked by
-/// tests/unit/simulation/plan_check_test.cc, and by every plan that tests/unit/simulation/ has refused.
+/// Checks a plan on a model and finds where its zones are: no factor is analysed and no step is
+/// taken. Fields are named as in lipofill.v1.SimulationSpec. CANCELLED once it is unwanted. Checked
+/// by tests/unit/simulation/plan_check_test.cc, and by every plan that tests/unit/simulation/ has
+/// refused.
 absl::StatusOr<PlanCheck> check_plan_on_model(const model::FaceModel& model, const plan::SimulationSpec& spec,
                                               const Unwanted& unwanted);
 

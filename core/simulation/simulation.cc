@@ -14,7 +14,8 @@
 namespace lipofill::simulation {
 namespace {
 
-/// A step that does not converge is tried again at half its size, down to this share of the plan's step.
+/// A step that does not converge is tried again at half its size, down to this share of the plan's
+/// step.
 constexpr double kSmallestStepShare = 1.0 / 1024.0;
 /// A step aims at this share of the size that the error estimate allows.
 constexpr double kStepSafety = 0.8;
@@ -106,8 +107,9 @@ void Simulation::Impl::try_with_smaller_steps() {
   attempt.reason = absl::StrCat("at ", state.time, " s, with steps down to ", smallest * 1e3, " ms: ", attempt.reason);
 }
 
-/// The step chosen, or less: where steps may grow while injecting, one ends where an injection starts or ends, so that
-/// none is smeared over time, and the way there is halved rather than left with a sliver of a step.
+/// The step chosen, or less: where steps may grow while injecting, one ends where an injection
+/// starts or ends, so that none is smeared over time, and the way there is halved rather than left
+/// with a sliver of a step.
 double Simulation::Impl::first_step_to_try(double smallest) const {
   const double dt = std::max(state.next_step, smallest);
   if (!spec.max_injection_step.has_value()) return dt;
@@ -122,8 +124,8 @@ double Simulation::Impl::next_mark() const {
   return std::min(schedule.next_change(state.time), spec.end);
 }
 
-/// Local error of implicit Euler, dt^2 x''/2, from how far the step leaves the line of the last one: the largest over
-/// the positions of the tissue and the thickness of the films [m].
+/// Local error of implicit Euler, dt^2 x''/2, from how far the step leaves the line of the last
+/// one: the largest over the positions of the tissue and the thickness of the films [m].
 double Simulation::Impl::estimate_error(const mechanics::SimulationState& next, double dt) const {
   double deviation = 0.0;
   if (state.positions.size() > 0) {

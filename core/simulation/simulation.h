@@ -61,7 +61,7 @@ struct StepReport {
   double skin_max_displacement = 0.0;  ///< [m]
   double skin_speed = 0.0;             ///< [m/s]  largest over the nodes of the skin
   double skin_volume_change = 0.0;     ///< [m3]  swept by the skin
-  double min_scaled_jacobian = 1.0;    ///< of the deformed tissue
+  double min_scaled_jacobian = 1.0;    ///< the deformed tissue has it
   int film_iterations = 0;             ///< Picard iterations in this step
   int newton_iterations = 0;
   double void_volume = 0.0;       ///< gap that is neither fat nor closed, at the suction limit [m3]
@@ -70,13 +70,13 @@ struct StepReport {
   double error_estimate = 0.0;    ///< local error of the step on positions and thickness [m]
   double settling_error = 0.0;    ///< how far the skin has still to go, by the fall of its speed [m]; may be infinite
   double elastic_energy = 0.0;    ///< [J]
-  double kinetic_energy = 0.0;    ///< of the tissue [J]
+  double kinetic_energy = 0.0;    ///< the tissue has it [J]
   double injection_work = 0.0;    ///< since the start [J]
   double film_dissipation = 0.0;  ///< since the start [J]
   double ligament_tension = 0.0;  ///< sum over all ligaments [N]
   int broken_ligament_points = 0;
   int closed_cells = 0;                 ///< cells that fat has not entered
-  mechanics::StepCost cost;             ///< of the step, tries that were taken back included
+  mechanics::StepCost cost;             ///< the step took it, with tries that were taken back
   std::vector<double> probe_thickness;  ///< [m]
   std::vector<double> probe_pressure;   ///< [Pa]
 };
@@ -121,14 +121,16 @@ class Simulation {
   const StepReport& report() const;
   std::vector<ZoneReport> zone_reports() const;
   std::vector<LigamentReport> ligament_reports() const;
-  /// What to know before relying on the figures, a sentence each: the remarks on the model and on its zones, and once it
-  /// has ended a scaled Jacobian below 0.2, a pressure above 10 kPa, and tissue whose volume is off by more than 2 %.
+  /// What to know before relying on the figures, a sentence each: the remarks on the model and on
+  /// its zones, and once it has ended a scaled Jacobian below 0.2, a pressure above 10 kPa, and
+  /// tissue whose volume is off by more than 2 %.
   std::vector<std::string> remarks() const;
   /// A report a layer, from the skin inwards; none for a model without layers.
   std::vector<LayerReport> layer_reports() const;
 
-  /// Adds an injection to the plan; without a start it begins now, or after the last one still due. Field violations
-  /// named as in lipofill.v1.Injection. A settled or finished simulation does not take one: FAILED_PRECONDITION.
+  /// Adds an injection to the plan; without a start it begins now, or after the last one still due.
+  /// Field violations named as in lipofill.v1.Injection. A settled or finished simulation does not
+  /// take one: FAILED_PRECONDITION.
   absl::Status inject(const plan::InjectionSpec& injection);
   /// The injection that inject() would add, or why it would refuse it. Whoever must note an injection before it takes
   /// effect notes this one, and then adds it with inject_resolved(), which refuses nothing. inject() of its
@@ -147,7 +149,8 @@ class Simulation {
   /// models of a thousand hexahedra and more [B].
   uint64_t memory_bytes() const;
 
-  /// The meshes at rest: "skin", "scan" (where the model has one), "film/<name>" for each film, "tissue".
+  /// The meshes at rest: "skin", "scan" (where the model has one), "film/<name>" for each film,
+  /// "tissue".
   std::vector<MeshTopology> topology() const;
 
   /// Fields of the present state on the named meshes (all when empty):
@@ -161,15 +164,17 @@ class Simulation {
   ///
   std::vector<FrameField> frame(const std::vector<std::string>& meshes) const;
 
-  /// Skin and scan of another model of the same chart, moved and coloured by this simulation: the fields of frame() on
-  /// "skin" and "scan", displacements bilinear between the nodes of this skin.
+  /// Skin and scan of another model of the same chart, moved and coloured by this simulation: the
+  /// fields of frame() on "skin" and "scan", displacements bilinear between the nodes of this skin.
   std::vector<FrameField> frame_on(const geometry::FaceGeometry& face) const;
 
-  /// SHA-256 of the state: positions, velocities, volumes, pressures, time; equal for equal runs, byte for byte.
+  /// SHA-256 of the state: positions, velocities, volumes, pressures, time; equal for equal runs,
+  /// byte for byte.
   std::string state_hash() const;
 
-  /// The whole mutable state as bytes, and back into a simulation created from the same model and specification:
-  /// restore + advance_step gives the bytes of advance_step alone. DATA_LOSS for bytes that are not such a state.
+  /// The whole mutable state as bytes, and back into a simulation created from the same model and
+  /// specification: restore + advance_step gives the bytes of advance_step alone. DATA_LOSS for
+  /// bytes that are not such a state.
   std::string snapshot() const;
   absl::Status restore(std::string_view snapshot);
 

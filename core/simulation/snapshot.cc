@@ -11,7 +11,8 @@ namespace {
 
 constexpr char kMagic[] = "lipofill-state-6";
 
-/// Visits every number of the mutable state in a fixed order, so that writing, reading and hashing cannot disagree.
+/// Visits every number of the mutable state in a fixed order, so that writing, reading and hashing
+/// cannot disagree.
 template <typename Visitor>
 void visit_state(mechanics::SimulationState& state, Visitor& visit) {
   visit.number(state.step);

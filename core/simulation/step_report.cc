@@ -19,7 +19,8 @@ struct FilmFigures {
   double volume = 0.0;
   double max_thickness = 0.0;
 
-  /// The pressure of a cell that fat has not entered is the pull of the tissue that holds it shut: it does not count.
+  /// The pressure of a cell that fat has not entered is the pull of the tissue that holds it shut:
+  /// it does not count.
   void add(const mechanics::FilmState& film, int cell, double cell_area) {
     const double cell_volume = film.volume[cell];
     if (film.is_entered.size() == 0 || film.is_entered[cell] > 0.0) {

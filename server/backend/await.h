@@ -6,8 +6,8 @@
 
 namespace lipofill::server {
 
-/// Asks for something whose answer comes on another thread, and waits for it. For threads that may wait: those of the
-/// pool for long calls.
+/// Asks for something whose answer comes on another thread, and waits for it. For threads that may
+/// wait: those of the pool for long calls.
 ///
 ///     const auto view = await<absl::StatusOr<SessionView>>([&](auto reply) { session.start({}, reply); });
 template <typename Answer, typename Ask>

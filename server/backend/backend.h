@@ -26,8 +26,8 @@ struct BackendOptions {
   int max_running = 16;
   SessionBounds sessions;
   SizeLimits sizes;
-  /// A client that has been silent for so long is asked whether it is there, and dropped when it does not answer in
-  /// time.
+  /// A client that has been silent for so long is asked whether it is there, and dropped when it
+  /// does not answer in time.
   double keepalive_s = 30.0;
   double keepalive_timeout_s = 20.0;
   int max_viewers = 1000;
@@ -65,11 +65,12 @@ struct Backend {
   TaskPool calls{"calls", 2, 256};
   TaskPool builds{"builds", 2, 64};
 
-  /// The model of a record, from memory or built again from its specification and scan. DATA_LOSS when what is built is
-  /// not what the record says.
+  /// The model of a record, from memory or built again from its specification and scan. DATA_LOSS
+  /// when what is built is not what the record says.
   absl::StatusOr<ModelCache::Model> load_model(const std::string& name);
 
-  /// Takes the locks that the daemon's threads share, and returns only if it gets them: a sign of life.
+  /// Takes the locks that the daemon's threads share, and returns only if it gets them: a sign of
+  /// life.
   void check_alive() const;
 };
 

@@ -12,8 +12,8 @@ namespace lipofill::server {
 /// The part of a simulated skin that a target is compared with.
 struct SkinPatch {
   std::string mesh;                ///< "scan", or "skin" on a square
-  std::vector<uint32_t> vertices;  ///< of that mesh, ascending
-  geometry::SurfaceMesh before;    ///< at rest
+  std::vector<uint32_t> vertices;  ///< they count in that mesh, ascending
+  geometry::SurfaceMesh before;    ///< is the surface at rest
   geometry::SurfaceMesh after;     ///< displaced; the same triangles
 };
 

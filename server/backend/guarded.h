@@ -8,7 +8,8 @@
 
 namespace lipofill::server {
 
-/// Carries out `work`; whatever it throws becomes a status: nothing may leave the daemon's edge as an exception.
+/// Carries out `work`; whatever it throws becomes a status: nothing may leave the daemon's edge as
+/// an exception.
 template <typename Work>
 absl::Status guarded(Work&& work) {
   try {

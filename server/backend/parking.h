@@ -15,17 +15,19 @@ namespace lipofill::server {
 /// record then.
 bool is_parked(const SimulationRecord& record);
 
-/// The session of a simulation, held; one that was parked is woken for it, which takes as long as building its model
-/// does. Null for one that has ended or could not be brought back. NOT_FOUND, RESOURCE_EXHAUSTED when there is no room
-/// for it now. Checked by tests/integration/service/parking_test.cc.
+/// The session of a simulation, held; one that was parked is woken for it, which takes as long as
+/// building its model does. Null for one that has ended or could not be brought back. NOT_FOUND,
+/// RESOURCE_EXHAUSTED when there is no room for it now. Checked by
+/// tests/integration/service/parking_test.cc.
 absl::StatusOr<std::shared_ptr<Session>> find_or_wake(Backend& backend, const std::string& id);
 
-/// Why a command finds no session: FAILED_PRECONDITION for a simulation that has ended, UNAVAILABLE for one that could
-/// not be brought back, or that is still being made (reason BEING_MADE, to be tried again).
+/// Why a command finds no session: FAILED_PRECONDITION for a simulation that has ended, UNAVAILABLE
+/// for one that could not be brought back, or that is still being made (reason BEING_MADE, to be
+/// tried again).
 absl::Status no_session_for(const char* what, const SimulationRecord& record);
 
-/// Parks simulations that are READY or PAUSED, are not watched, and of which nothing was asked for a time. Looking at
-/// their figures does not count.
+/// Parks simulations that are READY or PAUSED, are not watched, and of which nothing was asked for
+/// a time. Looking at their figures does not count.
 class ParkingAttendant {
  public:
   /// With `idle` 0 none is ever parked.

@@ -33,7 +33,8 @@ absl::StatusOr<bool> ResultKeeper::keep_command(const CommandRecord& command, co
   return store_.append_command(command, "", request);
 }
 
-// The plan that is kept follows what was injected. Others cannot do the same meanwhile: the session is locked.
+// The plan that is kept follows what was injected. Others cannot do the same meanwhile: the session
+// is locked.
 absl::StatusOr<bool> ResultKeeper::keep_injection(const CommandRecord& command, double start_s,
                                                   const RequestKey& request) {
   v1::Injection injection;

@@ -16,11 +16,11 @@ struct CheckpointOptions {
   double interval_s = 10.0;                 ///< wall time between automatic ones; 0: none
   int kept = 3;                             ///< automatic ones a simulation
   int most_asked = 32;                      ///< ones made by clients, a simulation
-  uint64_t most_bytes = uint64_t{8} << 30;  ///< of all together
+  uint64_t most_bytes = uint64_t{8} << 30;  ///< all results together take no more
 };
 
-/// Puts what sessions do and compute into the store, as messages of the wire schema, and lets go of sessions that have
-/// ended. Counts what they do.
+/// Puts what sessions do and compute into the store, as messages of the wire schema, and lets go of
+/// sessions that have ended. Counts what they do.
 class ResultKeeper : public SessionSink {
  public:
   ResultKeeper(Store& store, CheckpointFiles& files, SessionManager& sessions, const CheckpointOptions& options,

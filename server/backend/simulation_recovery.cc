@@ -27,7 +27,7 @@ constexpr int kMostCheckpoints = 10'000;
 struct Ground {
   std::unique_ptr<simulation::Simulation> simulation;
   v1::SimulationSpec spec;
-  CheckpointRecord checkpoint;  ///< of step 0 and no command: the start
+  CheckpointRecord checkpoint;  ///< is the start where it has step 0 and no command
   std::string note;             ///< which checkpoints could not be used
 };
 
@@ -158,7 +158,8 @@ absl::Status bring_back(Backend& backend, const SimulationRecord& record) {
   return absl::OkStatus();
 }
 
-/// A simulation whose model, plan or log is lost has failed; one that met a shortage may come back another time.
+/// A simulation whose model, plan or log is lost has failed; one that met a shortage may come back
+/// another time.
 void tell_failure(Backend& backend, const SimulationRecord& record, const absl::Status& why) {
   const bool is_lost = absl::IsDataLoss(why) || absl::IsNotFound(why) || absl::IsInvalidArgument(why);
   const std::string reason =

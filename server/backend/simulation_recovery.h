@@ -12,7 +12,8 @@ namespace lipofill::server {
 /// tests/integration/service/resume_test.cc.
 absl::Status bring_back_simulations(Backend& backend);
 
-/// The same for one that was parked; it is held. RESOURCE_EXHAUSTED when there is no room for it now.
+/// The same for one that was parked; it is held. RESOURCE_EXHAUSTED when there is no room for it
+/// now.
 absl::StatusOr<std::shared_ptr<Session>> wake_simulation(Backend& backend, const SimulationRecord& record);
 
 }  // namespace lipofill::server

@@ -21,7 +21,7 @@ class CallGate;
 struct Call {
   std::string method;      ///< "/lipofill.v1.PatientService/GetPatient"
   std::string request_id;  ///< the client's x-request-id, or one that was made for it
-  std::string trace_id;    ///< of the client's W3C traceparent; empty without one
+  std::string trace_id;    ///< the client's W3C traceparent has it; empty without one
   std::string parent_id;   ///< the client's span, the same way
   Principal principal;     ///< who calls, once admitted
   /// The reason why the call is not to be carried out; whatever answers calls looks here first. A
@@ -38,11 +38,12 @@ struct Call {
 
 using Metadata = std::multimap<grpc::string_ref, grpc::string_ref>;
 
-/// Reads x-request-id (1 to 64 letters, digits, '.', '_', ':' and '-', else one is made) and traceparent (version 00,
-/// else ignored). Checked by tests/unit/server/entry/call_test.cc.
+/// Reads x-request-id (1 to 64 letters, digits, '.', '_', ':' and '-', else one is made) and
+/// traceparent (version 00, else ignored). Checked by tests/unit/server/entry/call_test.cc.
 Call read_call(const std::string& method, const Metadata& metadata);
 
-/// The context of a call with what is known of it. Every call of a service of ours has one: see CallContextAllocator.
+/// The context of a call with what is known of it. Every call of a service of ours has one: see
+/// CallContextAllocator.
 class CallContext : public grpc::CallbackServerContext {
  public:
   /// The call is shared with its watcher, which outlasts the context by a moment.

@@ -17,12 +17,13 @@ enum class Effect {
 struct MethodRule {
   Effect effect = Effect::kNone;
   Role least = Role::kAdmin;
-  bool is_open = false;      ///< to everybody, also to those who do not say who they are
+  bool is_open = false;      ///< everybody may call it, also who does not say who they are
   bool is_frequent = false;  ///< so often that the audit log has only what is refused of it
 };
 
-/// The rule of a method by its full name, "/lipofill.v1.PatientService/GetPatient"; nullptr without one: nobody may
-/// call it. A new method must have its line in the table: tests/unit/server/entry/call_test.cc walks all services.
+/// The rule of a method by its full name, "/lipofill.v1.PatientService/GetPatient"; nullptr without
+/// one: nobody may call it. A new method must have its line in the table:
+/// tests/unit/server/entry/call_test.cc walks all services.
 const MethodRule* rule_of(const std::string& method);
 
 /// True when the table has the method.

@@ -19,7 +19,8 @@
 
 namespace lipofill::server {
 
-/// True once whoever called has cancelled, has gone, or has a deadline that has passed. Until the call was answered.
+/// True once whoever called has cancelled, has gone, or has a deadline that has passed. Until the
+/// call was answered.
 inline Unwanted caller_has_left(grpc::CallbackServerContext* context) {
   return [context] { return context->IsCancelled(); };
 }

@@ -6,8 +6,8 @@
 
 namespace lipofill::server {
 
-/// Ends the program with 1 when it is not destroyed within the timeout: a drain that hangs is cut off. What was
-/// acknowledged is in the store by then; what was not, is lost. Checked by
+/// Ends the program with 1 when it is not destroyed within the timeout: a drain that hangs is cut
+/// off. What was acknowledged is in the store by then; what was not, is lost. Checked by
 /// tests/unit/server/ops/service_manager_test.cc.
 class DrainGuard {
  public:

@@ -13,9 +13,9 @@ struct LogField {
 };
 using LogFields = std::vector<LogField>;
 
-/// Lines to standard error, flushed one by one. "text": time in UTC, level, message, name=value of each field. "json":
-/// an object a line with "time", "level", "message" and the fields. Messages name resources by their pseudonymous ids
-/// only. Checked by tests/unit/server/ops/logging_test.cc.
+/// Lines to standard error, flushed one by one. "text": time in UTC, level, message, name=value of
+/// each field. "json": an object a line with "time", "level", "message" and the fields. Messages
+/// name resources by their pseudonymous ids only. Checked by tests/unit/server/ops/logging_test.cc.
 void set_up_logging(const std::string& level, const std::string& format);
 
 /// While it lives, the lines of its thread carry its fields, after those of scopes around it.

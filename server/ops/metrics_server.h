@@ -8,8 +8,9 @@
 
 namespace lipofill::server {
 
-/// The metrics over HTTP, path /metrics, in the text form of Prometheus. To be stopped (destroyed) before what the
-/// refreshes of the metrics look at. Checked by tests/integration/service/metrics_test.cc.
+/// The metrics over HTTP, path /metrics, in the text form of Prometheus. To be stopped (destroyed)
+/// before what the refreshes of the metrics look at. Checked by
+/// tests/integration/service/metrics_test.cc.
 class MetricsServer {
  public:
   /// Starts the server. INVALID_ARGUMENT for an address that is no HOST:PORT, UNAVAILABLE when it

@@ -44,7 +44,7 @@ struct CommandLine {
   bool check = false;
   std::string backup_to;
   std::string restore_from;
-  std::vector<std::string> audit_files;  ///< to be verified
+  std::vector<std::string> audit_files;  ///< the chains of these are verified
 };
 
 std::string configuration_file(const CLI::Option& option) {

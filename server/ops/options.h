@@ -46,15 +46,16 @@ struct Options {
   SecuritySettings security;
 };
 
-/// Every setting there is. A new one is a member of Options and an entry here: the file, the environment, the command
-/// line, --help and --check follow.
+/// Every setting there is. A new one is a member of Options and an entry here: the file, the
+/// environment, the command line, --help and --check follow.
 std::vector<Setting> settings_of(Options& options);
 
 /// Checks that values which are well formed one by one also fit together. OK or field violations.
 absl::Status check_options(const Options& options);
 
-/// Reads --config's file, the environment and the command line; what comes later wins. Without a value the program ends
-/// with `exit_code`: after --help, --version or --check (0), or a mistake (2), all of them named on standard error.
+/// Reads --config's file, the environment and the command line; what comes later wins. Without a
+/// value the program ends with `exit_code`: after --help, --version or --check (0), or a mistake
+/// (2), all of them named on standard error.
 /// Checked by tests/integration/service/configuration_test.cc.
 std::optional<Options> parse_options(int argc, char** argv, int& exit_code);
 

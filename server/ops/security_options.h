@@ -11,8 +11,8 @@ namespace lipofill::server {
 /// The settings of who may do what.
 std::vector<Setting> settings_of(SecuritySettings& security);
 
-/// Looks through files of an audit log and says what was found. The exit code: 0, or 1 when a line was changed, taken
-/// out or put in.
+/// Looks through files of an audit log and says what was found. The exit code: 0, or 1 when a line
+/// was changed, taken out or put in.
 int print_audit_verification(const std::vector<std::string>& files);
 
 }  // namespace lipofill::server

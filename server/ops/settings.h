@@ -13,8 +13,8 @@
 
 namespace lipofill::server {
 
-/// One setting of the daemon: its name (as in the file, after "--", and with LIPOFILLD_ in the environment), what it
-/// may be, and where it goes.
+/// One setting of the daemon: its name (as in the file, after "--", and with LIPOFILLD_ in the
+/// environment), what it may be, and where it goes.
 struct Setting {
   using Target = std::variant<std::string*, int*, uint64_t*, double*, bool*, std::vector<std::string>*>;
 
@@ -22,9 +22,9 @@ struct Setting {
   std::string value_name;  ///< "N"; of a switch: empty
   std::string help;
   Target target;
-  double low = -std::numeric_limits<double>::infinity();  ///< of numbers
+  double low = -std::numeric_limits<double>::infinity();  ///< bounds a number from below
   double high = std::numeric_limits<double>::infinity();
-  std::vector<std::string> choices = {};  ///< of texts; empty: any
+  std::vector<std::string> choices = {};  ///< a text is one of these; empty: it may be any
 
   std::string environment_name() const;  ///< "LIPOFILLD_MAX_SIMULATIONS"
   std::string text() const;              ///< its value now, as a file would have it
@@ -40,16 +40,17 @@ struct GivenValue {
 };
 using GivenValues = std::map<std::string, GivenValue>;
 
-/// The values in a file of TOML or INI lines, `max-simulations = 8`; also `max_simulations`. INVALID_ARGUMENT for a
-/// file that cannot be read and, as field violations, for names that are no setting.
+/// The values in a file of TOML or INI lines, `max-simulations = 8`; also `max_simulations`.
+/// INVALID_ARGUMENT for a file that cannot be read and, as field violations, for names that are no
+/// setting.
 absl::StatusOr<GivenValues> read_settings_file(const std::string& path, const std::vector<Setting>& settings);
 
-/// The values in the environment; of lists, separated by commas. Other variables with the prefix are nobody's mistake:
-/// container platforms set some.
+/// The values in the environment; of lists, separated by commas. Other variables with the prefix
+/// are nobody's mistake: container platforms set some.
 GivenValues read_settings_environment(const std::vector<Setting>& settings);
 
-/// Puts what was given in place, and notes what is not a value of its setting: the setting, the text, where it came
-/// from and the bound. Checked by tests/unit/server/ops/settings_test.cc.
+/// Puts what was given in place, and notes what is not a value of its setting: the setting, the
+/// text, where it came from and the bound. Checked by tests/unit/server/ops/settings_test.cc.
 void assign_settings(const std::vector<Setting>& settings, const GivenValues& given, FieldViolations& violations);
 
 }  // namespace lipofill::server

@@ -1,5 +1,6 @@
-// Libraries start threads of their own before main(), in which no signal is blocked: blocking alone would leave those
-// to the default, which is to end the program. So there is a handler; it hands the number on through a pipe.
+// Libraries start threads of their own before main(), in which no signal is blocked: blocking alone
+// would leave those to the default, which is to end the program. So there is a handler; it hands
+// the number on through a pipe.
 
 #include "server/ops/signals.h"
 

@@ -11,7 +11,8 @@ namespace lipofill::server {
 /// once, before the first thread is started.
 void take_signals();
 
-/// Waits for SIGTERM or SIGINT and returns its number. Meanwhile calls `tick` every period, where there is one.
+/// Waits for SIGTERM or SIGINT and returns its number. Meanwhile calls `tick` every period, where
+/// there is one.
 int wait_for_signal(std::optional<std::chrono::microseconds> period, const std::function<void()>& tick);
 
 }  // namespace lipofill::server

@@ -13,7 +13,8 @@ namespace lipofill::server {
 
 v1::Model to_model(const ModelRecord& record);
 
-/// Starts the operation that builds a model, or finds the one an equal request started. What can be refused at once is.
+/// Starts the operation that builds a model, or finds the one an equal request started. What can be
+/// refused at once is.
 absl::StatusOr<OperationView> start_model_build(Backend& backend, const Principal& caller,
                                                 const v1::BuildModelRequest& request);
 

@@ -32,7 +32,8 @@ v1::Patient to_patient(const PatientRecord& record) {
   return patient;
 }
 
-/// Labels follow the rule of display names: pseudonyms have no use for more, and identities do not fit well.
+/// Labels follow the rule of display names: pseudonyms have no use for more, and identities do not
+/// fit well.
 template <typename Labels>
 absl::StatusOr<std::map<std::string, std::string>> read_labels(const Labels& labels, const std::string& field) {
   FieldViolations violations;

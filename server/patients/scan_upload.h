@@ -15,17 +15,20 @@ namespace lipofill::server {
 
 v1::Scan to_scan(const ScanRecord& record);
 
-/// Takes in the bytes of scans. A scan's chunks arrive in order, over as many calls, connections and runs of the daemon
-/// as it takes; with the last one the whole is checked against its SHA-256 and read as a surface. What fails there is
-/// removed, record and bytes. Checked by tests/integration/service/upload_test.cc.
+/// Takes in the bytes of scans. A scan's chunks arrive in order, over as many calls, connections
+/// and runs of the daemon as it takes; with the last one the whole is checked against its SHA-256
+/// and read as a surface. What fails there is removed, record and bytes. Checked by
+/// tests/integration/service/upload_test.cc.
 class ScanUploads {
  public:
   explicit ScanUploads(Backend& backend) : backend_(backend) {}
 
   absl::StatusOr<v1::Scan> create(const Principal& caller, const v1::CreateScanRequest& request);
-  /// The record with the number of bytes that are really here: after a crash the file may hold fewer than were noted.
+  /// The record with the number of bytes that are really here: after a crash the file may hold
+  /// fewer than were noted.
   absl::StatusOr<ScanRecord> find(const std::string& patient, const std::string& scan);
-  /// Adds a chunk. INVALID_ARGUMENT for a wrong offset (naming the right one), too many bytes, a scan that is complete.
+  /// Adds a chunk. INVALID_ARGUMENT for a wrong offset (naming the right one), too many bytes, a
+  /// scan that is complete.
   absl::StatusOr<ScanRecord> receive(const std::string& patient, const std::string& scan, uint64_t offset,
                                      const std::string& data);
   /// Completes a scan once all bytes are here; may take seconds. INVALID_ARGUMENT for bytes that

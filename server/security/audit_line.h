@@ -21,15 +21,15 @@ struct AuditEntry {
 
 /// The end of a chain of lines: the next line carries on from it.
 struct AuditHead {
-  uint64_t number = 0;                      ///< of the last line
-  std::string hash = std::string(64, '0');  ///< of the last line
+  uint64_t number = 0;                      ///< the last line had it
+  std::string hash = std::string(64, '0');  ///< the last line had it
 };
 
 /// SHA-256 of a line without its end, in hex.
 std::string hash_of_line(std::string_view line);
 
-/// The line that follows `head`: a JSON object with "number", "time", the entry, and "previous", the hash of the line
-/// before.
+/// The line that follows `head`: a JSON object with "number", "time", the entry, and "previous",
+/// the hash of the line before.
 std::string make_audit_line(const AuditEntry& entry, const AuditHead& head);
 
 /// Number and "previous" of a line; false for one that is none, as a loss of power may leave.

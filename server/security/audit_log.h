@@ -18,8 +18,8 @@ namespace lipofill::server {
 /// tests/integration/security/audit_test.cc.
 class AuditLog {
  public:
-  /// Goes on after the last line there is, also one that a loss of power cut short. FAILED_PRECONDITION when the file
-  /// cannot be written, or another daemon writes it.
+  /// Goes on after the last line there is, also one that a loss of power cut short.
+  /// FAILED_PRECONDITION when the file cannot be written, or another daemon writes it.
   static absl::StatusOr<std::unique_ptr<AuditLog>> open(const std::string& path, uint64_t rotate_bytes);
   ~AuditLog();
   AuditLog(const AuditLog&) = delete;
@@ -55,10 +55,11 @@ struct AuditSummary {
   AuditHead head;
 };
 
-/// Looks through files of an audit log, given in their order: every line must carry on from the one before. DATA_LOSS
-/// naming the first that does not, or when no line is one of an audit log; INVALID_ARGUMENT for a file that cannot be
-/// read. That lines are missing at the end shows only against a head that was kept elsewhere: the daemon logs it when
-/// it starts, at each new file and when it stops.
+/// Looks through files of an audit log, given in their order: every line must carry on from the one
+/// before. DATA_LOSS naming the first that does not, or when no line is one of an audit log;
+/// INVALID_ARGUMENT for a file that cannot be read. That lines are missing at the end shows only
+/// against a head that was kept elsewhere: the daemon logs it when it starts, at each new file and
+/// when it stops.
 absl::StatusOr<AuditSummary> verify_audit(const std::vector<std::string>& files);
 
 }  // namespace lipofill::server

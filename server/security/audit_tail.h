@@ -13,8 +13,9 @@ struct AuditTail {
   bool is_torn = false;  ///< its file ends within a line
 };
 
-/// The last line of an audit log: of the file itself or, where that is empty (the daemon ended between two files), of
-/// the newest of the files kept beside it. DATA_LOSS when there are lines of which none can be read.
+/// The last line of an audit log: of the file itself or, where that is empty (the daemon ended
+/// between two files), of the newest of the files kept beside it. DATA_LOSS when there are lines of
+/// which none can be read.
 absl::StatusOr<AuditTail> find_audit_tail(const std::string& path);
 
 }  // namespace lipofill::server

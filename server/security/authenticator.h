@@ -20,9 +20,10 @@ struct Credentials {
   bool is_unix_socket = false;
 };
 
-/// Tells who calls: by a bearer token; without one by the client certificate; without either, where it is so set, by
-/// having come through a UNIX socket. Where neither tokens nor certificates are set up, everybody is the user of this
-/// machine. Thread-safe. Checked by tests/unit/server/security/authenticator_test.cc and tests/integration/security/.
+/// Tells who calls: by a bearer token; without one by the client certificate; without either, where
+/// it is so set, by having come through a UNIX socket. Where neither tokens nor certificates are
+/// set up, everybody is the user of this machine. Thread-safe. Checked by
+/// tests/unit/server/security/authenticator_test.cc and tests/integration/security/.
 class Authenticator {
  public:
   /// Opens the files. INVALID_ARGUMENT with a violation for every file that cannot be used.

@@ -19,9 +19,10 @@ struct CertificateEntry {
 /// tests/unit/server/security/certificate_map_test.cc.
 class CertificateMap {
  public:
-  /// JSON: {"certificates": [{"common_name": "planner-3", "tenant": "ward3", "roles": ["planner"]}, ...]}; in place of
-  /// "common_name" "alternative_name", one of the certificate's subject alternative names (DNS name, URI, e-mail or IP
-  /// address); "patients" as in tokens. INVALID_ARGUMENT naming the entry and what is wrong with it.
+  /// JSON: {"certificates": [{"common_name": "planner-3", "tenant": "ward3", "roles": ["planner"]},
+  /// ...]}; in place of "common_name" "alternative_name", one of the certificate's subject
+  /// alternative names (DNS name, URI, e-mail or IP address); "patients" as in tokens.
+  /// INVALID_ARGUMENT naming the entry and what is wrong with it.
   static absl::StatusOr<CertificateMap> parse(const std::string& text);
 
   /// Returns the holder of a certificate with these names; nullptr for none. If several entries

@@ -21,8 +21,8 @@ struct ClaimRules {
 absl::StatusOr<Principal> read_claims(const nlohmann::json& claims, const ClaimRules& rules,
                                       Principal::Clock::time_point now);
 
-/// The roles and patients of a JSON object, as claims and entries of the certificate file have them.
-/// INVALID_ARGUMENT saying which member is wrong.
+/// The roles and patients of a JSON object, as claims and entries of the certificate file have
+/// them. INVALID_ARGUMENT saying which member is wrong.
 absl::Status read_rights(const nlohmann::json& object, Principal& principal);
 
 }  // namespace lipofill::server

@@ -20,8 +20,8 @@ const char* role_name(Role role);
 /// Returns kNone for a word that is no role.
 Role role_of(const std::string& word);
 
-/// A tenant's name: a lower-case letter, then up to 30 of a-z and 0-9. Without '-', so that an id that begins with
-/// "{tenant}-" is one tenant's alone.
+/// A tenant's name: a lower-case letter, then up to 30 of a-z and 0-9. Without '-', so that an id
+/// that begins with "{tenant}-" is one tenant's alone.
 bool is_tenant(const std::string& text);
 
 /// The caller. By default it is the user of this machine, to whom a daemon without authentication
@@ -32,7 +32,7 @@ struct Principal {
   std::string subject = "local";
   Role role = Role::kAdmin;
   Scope scope;
-  std::optional<Clock::time_point> expires = {};  ///< of its token, with the clock's tolerance
+  std::optional<Clock::time_point> expires = {};  ///< the token ends then, the clock's tolerance included
 
   bool has_expired(Clock::time_point now = Clock::now()) const { return expires && now >= *expires; }
 };

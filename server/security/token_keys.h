@@ -15,9 +15,10 @@ struct TokenKey {
 };
 using TokenKeys = std::vector<TokenKey>;
 
-/// The keys in a file: one or more PEM blocks "PUBLIC KEY", or a JSON Web Key Set (RFC 7517). RSA keys have at least
-/// 2048 bits, elliptic ones lie on P-256. INVALID_ARGUMENT saying which key is of no use, and for private keys and
-/// shared secrets: whoever verifies tokens must not be able to make them.
+/// The keys in a file: one or more PEM blocks "PUBLIC KEY", or a JSON Web Key Set (RFC 7517). RSA
+/// keys have at least 2048 bits, elliptic ones lie on P-256. INVALID_ARGUMENT saying which key is
+/// of no use, and for private keys and shared secrets: whoever verifies tokens must not be able to
+/// make them.
 /// Checked by tests/unit/server/security/token_keys_test.cc.
 absl::StatusOr<TokenKeys> parse_token_keys(const std::string& text);
 

@@ -12,12 +12,13 @@ namespace lipofill::server {
 struct TokenParts {
   nlohmann::json header;
   nlohmann::json claims;
-  std::string key_id;     ///< of the header; empty without one
-  std::string algorithm;  ///< of the header
+  std::string key_id;     ///< the header names it; empty without one
+  std::string algorithm;  ///< the header names it
 };
 
-/// Takes a token apart. UNAUTHENTICATED "TOKEN_MALFORMED" unless it has at most 8 KiB, three parts of base64url, a
-/// header and claims that are JSON objects, an algorithm, and no extension that must be understood ("crit").
+/// Takes a token apart. UNAUTHENTICATED "TOKEN_MALFORMED" unless it has at most 8 KiB, three parts
+/// of base64url, a header and claims that are JSON objects, an algorithm, and no extension that
+/// must be understood ("crit").
 absl::StatusOr<TokenParts> take_token_apart(const std::string& token);
 
 /// True when the token was signed by the owner of the key, with the key's own algorithm, whatever

@@ -29,7 +29,8 @@ constexpr std::streamsize kChunk = 1 << 20;
 /// Path below the root, and the SHA-256 of the content in hex.
 using Sums = std::map<std::string, std::string>;
 
-/// Links to files in the data directory, so that they stay while they are copied, whatever the daemon deletes.
+/// Links to files in the data directory, so that they stay while they are copied, whatever the
+/// daemon deletes.
 class Staging {
  public:
   explicit Staging(const fs::path& data) : root_(data / absl::StrCat(kPrefix, ::getpid())) { sweep(data); }

@@ -14,7 +14,7 @@ namespace lipofill::server {
 /// Content of a checkpoint's file: everything that a simulation needs to go on, besides its model.
 struct CheckpointContent {
   std::string simulation;    ///< id
-  uint64_t step = 0;         ///< of the state
+  uint64_t step = 0;         ///< the state is after this step
   std::string spec_message;  ///< the plan with the injections taken by then
   std::string snapshot;      ///< simulation::Simulation::snapshot()
 };
@@ -28,22 +28,22 @@ inline constexpr uint64_t kMaxCheckpointBytes = uint64_t{1} << 30;
 ///     body: u64 step, then simulation, spec_message and snapshot, each a u64 length and its bytes
 std::string encode_checkpoint(const CheckpointContent& content);
 /// Decodes a checkpoint. DATA_LOSS saying what does not fit; no length is believed beyond the bytes
-/// that are there. Checked by tests/unit/server/store/checkpoint_files_test.cc with every bit flipped and
-/// every length cut.
+/// that are there. Checked by tests/unit/server/store/checkpoint_files_test.cc with every bit
+/// flipped and every length cut.
 absl::StatusOr<CheckpointContent> decode_checkpoint(std::string_view bytes);
 
 /// The SHA-256 that the file's header says its body has, in hex; empty when there is no header.
 std::string sha256_of_checkpoint(std::string_view bytes);
 
-/// The files of checkpoints: <root>/<simulation>/<checkpoint>. Ids are checked by whoever calls: they hold no
-/// separators. Checked by tests/unit/server/store/checkpoint_files_test.cc.
+/// The files of checkpoints: <root>/<simulation>/<checkpoint>. Ids are checked by whoever calls:
+/// they hold no separators. Checked by tests/unit/server/store/checkpoint_files_test.cc.
 class CheckpointFiles {
  public:
   static absl::StatusOr<CheckpointFiles> open(const std::filesystem::path& root);
 
   struct Written {
     uint64_t size_bytes = 0;
-    std::string sha256;  ///< of the file's body
+    std::string sha256;  ///< is computed from the file's body
   };
   /// Writes the file whole and on the medium, or not at all. RESOURCE_EXHAUSTED when there is no
   /// room or it is too large.

@@ -6,10 +6,12 @@
 
 namespace lipofill::server {
 
-/// The daemon's directory, locked for as long as this lives, so that two daemons never share one store.
+/// The daemon's directory, locked for as long as this lives, so that two daemons never share one
+/// store.
 class DataDirectory {
  public:
-  /// Makes it (readable by its owner alone). FAILED_PRECONDITION when it cannot, or another daemon holds it.
+  /// Makes it (readable by its owner alone). FAILED_PRECONDITION when it cannot, or another daemon
+  /// holds it.
   static absl::StatusOr<DataDirectory> open(const std::filesystem::path& path);
   DataDirectory(DataDirectory&& other) noexcept;
   DataDirectory& operator=(DataDirectory&&) = delete;

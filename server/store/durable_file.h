@@ -17,16 +17,17 @@ bool is_out_of_space(int error_number);
 /// what could not be done, and why.
 absl::Status file_error(const std::string& what, int error_number);
 
-/// Writes a file whole or not at all, also when the machine dies: beside its place, to the medium, then into its place.
-/// Its directory is made when it is missing. Errors as file_error() gives them; nothing is left behind then.
+/// Writes a file whole or not at all, also when the machine dies: beside its place, to the medium,
+/// then into its place. Its directory is made when it is missing. Errors as file_error() gives
+/// them; nothing is left behind then.
 /// Checked by tests/unit/server/store/checkpoint_files_test.cc.
 absl::Status write_durably(const std::filesystem::path& path, std::string_view bytes);
 
 /// Waits until what was written to a file, or which entries a directory has, is on the medium.
 absl::Status flush_to_medium(const std::filesystem::path& path);
 
-/// The bytes of a file. NOT_FOUND without one, RESOURCE_EXHAUSTED before any is read when there are more than
-/// `max_bytes`.
+/// The bytes of a file. NOT_FOUND without one, RESOURCE_EXHAUSTED before any is read when there are
+/// more than `max_bytes`.
 absl::StatusOr<std::string> read_whole_file(const std::filesystem::path& path, uint64_t max_bytes);
 
 }  // namespace lipofill::server

@@ -8,9 +8,9 @@
 
 namespace lipofill::server {
 
-/// Files that belong to something, <root>/<owner>/<name>. An owner's directory goes with its last file. Ids are checked
-/// by whoever calls: they hold no separators. Checked by tests/unit/server/store/scan_files_test.cc and
-/// checkpoint_files_test.cc.
+/// Files that belong to something, <root>/<owner>/<name>. An owner's directory goes with its last
+/// file. Ids are checked by whoever calls: they hold no separators. Checked by
+/// tests/unit/server/store/scan_files_test.cc and checkpoint_files_test.cc.
 class OwnedFiles {
  public:
   static absl::StatusOr<OwnedFiles> open(const std::filesystem::path& root);

@@ -23,8 +23,8 @@ struct PatientRecord {
 struct ScanRecord {
   std::string patient;
   std::string id;
-  int format = 0;  ///< as in the wire schema
-  int unit = 0;    ///< as in the wire schema
+  int format = 0;  ///< has the number of the wire schema
+  int unit = 0;    ///< has the number of the wire schema
   uint64_t size_bytes = 0;
   std::string sha256;
   uint64_t received_bytes = 0;
@@ -69,11 +69,12 @@ struct SimulationRecord {
   std::string tenant = kLocalTenant;
 };
 
-/// A client's command. Those that set the state are told by it: start and resume RUNNING, pause PAUSED.
+/// A client's command. Those that set the state are told by it: start and resume RUNNING, pause
+/// PAUSED.
 enum class CommandKind { kStart = 1, kPause, kResume, kStop, kInject, kRestore };
 
-/// One acknowledged command, in the order they took effect. A command is on course unless its simulation was restored
-/// to a state before it.
+/// One acknowledged command, in the order they took effect. A command is on course unless its
+/// simulation was restored to a state before it.
 struct CommandRecord {
   std::string simulation;
   uint64_t number = 0;  ///< 1, 2, ...; given by the store
@@ -83,7 +84,8 @@ struct CommandRecord {
   int64_t create_time_us = 0;
 };
 
-/// kAutomatic: made by the daemon, gone with the run. kAsked: made by a client. kOrigin: what a simulation began from.
+/// kAutomatic: made by the daemon, gone with the run. kAsked: made by a client. kOrigin: what a
+/// simulation began from.
 enum class CheckpointKind { kAutomatic = 1, kAsked, kOrigin };
 
 /// A state of a simulation, kept in a file.
@@ -96,8 +98,8 @@ struct CheckpointRecord {
   double time_s = 0.0;        ///< simulated
   double wall_s = 0.0;        ///< spent RUNNING until then
   uint64_t last_command = 0;  ///< number of the last command that is in the state; given by the store
-  uint64_t size_bytes = 0;    ///< of the file
-  std::string sha256;         ///< of the file's body
+  uint64_t size_bytes = 0;    ///< is that of the file
+  std::string sha256;         ///< is computed from the file's body
   std::string state_hash;
   int64_t create_time_us = 0;
 };
@@ -115,12 +117,12 @@ struct SeriesChunk {
   std::string rows_message;
 };
 
-/// Makes a create idempotent: the same method and id again, by the same tenant, give the resource made the first time.
-/// Empty id: no such promise.
+/// Makes a create idempotent: the same method and id again, by the same tenant, give the resource
+/// made the first time. Empty id: no such promise.
 struct RequestKey {
   std::string method;
   std::string id;
-  std::string fingerprint;  ///< of the whole request: the same id with another request is a mistake of the caller
+  std::string fingerprint;  ///< tells the whole request: one id for two requests is the caller's mistake
   std::string tenant = kLocalTenant;
 };
 

@@ -11,15 +11,16 @@
 
 namespace lipofill::server {
 
-/// The bytes of uploaded scans, a file each: <root>/<patient>/<scan>. Ids are checked by whoever calls: they hold no
-/// separators. Checked by tests/unit/server/store/scan_files_test.cc.
+/// The bytes of uploaded scans, a file each: <root>/<patient>/<scan>. Ids are checked by whoever
+/// calls: they hold no separators. Checked by tests/unit/server/store/scan_files_test.cc.
 class ScanFiles {
  public:
   static absl::StatusOr<ScanFiles> open(const std::filesystem::path& root);
 
   /// Bytes on disk, 0 where there is no file.
   uint64_t size(const std::string& patient, const std::string& scan) const;
-  /// Writes at an offset, making the file where there is none. RESOURCE_EXHAUSTED when the disk is full.
+  /// Writes at an offset, making the file where there is none. RESOURCE_EXHAUSTED when the disk is
+  /// full.
   absl::Status write(const std::string& patient, const std::string& scan, uint64_t offset,
                      std::string_view bytes) const;
   /// Waits until all that was written to a scan is on the medium.

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kApplicationId = 0x4c69706f;  // "Lipo"
 
-/// Ids are compared as bytes; requests hold the full name of what they made. Columns stand in the order in which the
-/// changes below bring them.
+/// Ids are compared as bytes; requests hold the full name of what they made. Columns stand in the
+/// order in which the changes below bring them.
 constexpr char kSchema[] = R"(
 CREATE TABLE patients (
   id BLOB PRIMARY KEY, display_name BLOB NOT NULL, create_time_us INTEGER NOT NULL,
@@ -57,8 +57,8 @@ CREATE TABLE checkpoints (
 /// 2: the bone under a face.
 constexpr char kFromVersion1[] = "ALTER TABLE models ADD COLUMN bone_scan BLOB NOT NULL DEFAULT x'';";
 
-/// 3: commands are logged and simulations have checkpoints, in kResumeTables. What was under way under version 2 was
-/// lost with its daemon.
+/// 3: commands are logged and simulations have checkpoints, in kResumeTables. What was under way
+/// under version 2 was lost with its daemon.
 constexpr char kFromVersion2[] = R"(
 ALTER TABLE simulations ADD COLUMN epoch INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE simulations ADD COLUMN origin BLOB NOT NULL DEFAULT x'';

@@ -15,8 +15,9 @@ inline constexpr int kSchemaVersion = 4;
 /// tests/integration/service/fault_test.cc.
 absl::Status check_database(Database& database, const std::string& path);
 
-/// Makes the tables of an empty database, or takes one of an earlier version to this one, step by step in one
-/// transaction. FAILED_PRECONDITION for a database of another program or of a later version, which stays as it is.
+/// Makes the tables of an empty database, or takes one of an earlier version to this one, step by
+/// step in one transaction. FAILED_PRECONDITION for a database of another program or of a later
+/// version, which stays as it is.
 /// Checked by tests/unit/server/store/schema_test.cc from every earlier version.
 absl::Status bring_up_to_date(Database& database, const std::string& path);
 

@@ -132,7 +132,8 @@ absl::Status Database::error(int code) const {
     case SQLITE_TOOBIG:
       return absl::ResourceExhaustedError(message);
     case SQLITE_IOERR:
-      // SQLite knows ENOSPC alone as a lack of room; of a quota or a limit it leaves no more than this.
+      // SQLite knows ENOSPC alone as a lack of room; of a quota or a limit it leaves no more than
+      // this.
       if (is_out_of_space(errno)) {
         return absl::ResourceExhaustedError("store: no space is left in the data directory");
       }

@@ -15,8 +15,8 @@ namespace lipofill::server {
 
 class Database;
 
-/// One use of a prepared statement: bind, step through the rows, read columns. The first error sticks and ends the
-/// rows.
+/// One use of a prepared statement: bind, step through the rows, read columns. The first error
+/// sticks and ends the rows.
 ///
 ///     Query query(db, "SELECT name FROM things WHERE size > ?");
 ///     query.bind(size);
@@ -59,8 +59,8 @@ class Query {
   absl::Status status_;
 };
 
-/// A connection to one database file; its users take turns (they hold a mutex of their own). Statements are prepared
-/// once.
+/// A connection to one database file; its users take turns (they hold a mutex of their own).
+/// Statements are prepared once.
 class Database {
  public:
   static absl::StatusOr<std::unique_ptr<Database>> open(const std::string& path);

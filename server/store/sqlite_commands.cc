@@ -7,8 +7,8 @@
 namespace lipofill::server {
 namespace {
 
-/// The state that a command leads to, where it sets one. STOPPED is not among them: a simulation has ended once its
-/// result is kept.
+/// The state that a command leads to, where it sets one. STOPPED is not among them: a simulation
+/// has ended once its result is kept.
 std::optional<SimulationState> state_after(CommandKind kind) {
   if (kind == CommandKind::kStart || kind == CommandKind::kResume) return SimulationState::kRunning;
   if (kind == CommandKind::kPause) return SimulationState::kPaused;

@@ -12,8 +12,8 @@
 
 namespace lipofill::server {
 
-/// The store in one SQLite file: write-ahead log, foreign keys, a schema with a version (PRAGMA user_version). One
-/// connection, its users take turns; calls last some ten microseconds.
+/// The store in one SQLite file: write-ahead log, foreign keys, a schema with a version (PRAGMA
+/// user_version). One connection, its users take turns; calls last some ten microseconds.
 class SqliteStore : public Store {
  public:
   /// Opens the store. DATA_LOSS for a file that is no database, FAILED_PRECONDITION for one of
@@ -85,8 +85,8 @@ class SqliteStore : public Store {
   /// Does work whole or not at all: nothing it wrote stays when it is not OK.
   using Work = std::function<absl::Status()>;
   absl::Status transact(const Work& work);
-  /// The same for what a request makes, or changes, once: `name` is remembered with it. The name that an equal request
-  /// is remembered with, and nothing is done, where there was one.
+  /// The same for what a request makes, or changes, once: `name` is remembered with it. The name
+  /// that an equal request is remembered with, and nothing is done, where there was one.
   absl::StatusOr<std::optional<std::string>> transact_once(const RequestKey& request, const std::string& name,
                                                            const Work& work);
 

@@ -11,23 +11,25 @@
 
 namespace lipofill::server {
 
-/// Patients, scans (their records, not their bytes), models, simulations and their results, durable and transactional:
-/// every call either happens whole or not at all. All calls may come from any thread.
+/// Patients, scans (their records, not their bytes), models, simulations and their results, durable
+/// and transactional: every call either happens whole or not at all. All calls may come from any
+/// thread.
 ///
-/// Errors: NOT_FOUND and ALREADY_EXISTS naming the resource, FAILED_PRECONDITION, INVALID_ARGUMENT for a request id
-/// that was used for another request, DATA_LOSS and UNAVAILABLE from the medium. Checked by
-/// tests/unit/server/store/store_test.cc.
+/// Errors: NOT_FOUND and ALREADY_EXISTS naming the resource, FAILED_PRECONDITION, INVALID_ARGUMENT
+/// for a request id that was used for another request, DATA_LOSS and UNAVAILABLE from the medium.
+/// Checked by tests/unit/server/store/store_test.cc.
 class Store {
  public:
   virtual ~Store() = default;
 
-  /// Creates return the record now in the store: the one given, or the one an equal request made before.
+  /// Creates return the record now in the store: the one given, or the one an equal request made
+  /// before.
   virtual absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) = 0;
   virtual absl::StatusOr<PatientRecord> get_patient(const std::string& id) = 0;
   /// Lists the patients within the scope.
   virtual absl::StatusOr<std::vector<PatientRecord>> list_patients(const Scope& scope, const Page& page) = 0;
-  /// Replaces display name and labels by what `change` makes of the present record; nobody comes between. What `change`
-  /// refuses is not done.
+  /// Replaces display name and labels by what `change` makes of the present record; nobody comes
+  /// between. What `change` refuses is not done.
   using PatientChange = std::function<absl::StatusOr<PatientRecord>(const PatientRecord& present)>;
   virtual absl::StatusOr<PatientRecord> update_patient(const std::string& id, const PatientChange& change) = 0;
   /// Deletes a patient. FAILED_PRECONDITION while it has scans or models, unless `force` is given;
@@ -74,15 +76,15 @@ class Store {
   /// A number for a new stream of frames: `now_us`, or more, so that it is larger than any before.
   virtual absl::StatusOr<uint64_t> begin_epoch(const std::string& id, int64_t now_us) = 0;
 
-  /// Keeps a command, the state it leads to and, where one is given, the plan it makes. False when an equal request
-  /// was kept before: nothing is changed then.
+  /// Keeps a command, the state it leads to and, where one is given, the plan it makes. False when
+  /// an equal request was kept before: nothing is changed then.
   virtual absl::StatusOr<bool> append_command(const CommandRecord& command, const std::string& spec_message,
                                               const RequestKey& request) = 0;
   /// The commands on course, in order.
   virtual absl::StatusOr<std::vector<CommandRecord>> list_commands(const std::string& simulation) = 0;
 
-  /// Records a checkpoint whose file is there, together with the rows of the series up to it. ALREADY_EXISTS for an id
-  /// in use.
+  /// Records a checkpoint whose file is there, together with the rows of the series up to it.
+  /// ALREADY_EXISTS for an id in use.
   virtual absl::StatusOr<CheckpointRecord> create_checkpoint(const CheckpointRecord& checkpoint,
                                                              const std::optional<SeriesChunk>& rows,
                                                              const RequestKey& request) = 0;
@@ -100,9 +102,9 @@ class Store {
   virtual absl::StatusOr<SimulationRecord> create_simulation_from(const SimulationRecord& simulation,
                                                                   const CheckpointRecord& origin,
                                                                   const RequestKey& request) = 0;
-  /// Takes a simulation back to a checkpoint on its course: what came after, commands, checkpoints and rows of the
-  /// series, leaves the course; `state` and `spec_message` are those it goes on with. False as in append_command;
-  /// FAILED_PRECONDITION for a checkpoint that is not on course.
+  /// Takes a simulation back to a checkpoint on its course: what came after, commands, checkpoints
+  /// and rows of the series, leaves the course; `state` and `spec_message` are those it goes on
+  /// with. False as in append_command; FAILED_PRECONDITION for a checkpoint that is not on course.
   virtual absl::StatusOr<bool> restore_simulation(const CommandRecord& restore, SimulationState state,
                                                   const std::string& spec_message, const RequestKey& request) = 0;
   /// Forgets rows of the series after a step.

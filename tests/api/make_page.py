@@ -18,9 +18,19 @@ ErrorInfo and, for arguments, a BadRequest that names each field, its value and 
 zero; their defaults are in their comments.
 
 """
-SCALARS = {"TYPE_DOUBLE": "double", "TYPE_FLOAT": "float", "TYPE_INT64": "int64", "TYPE_UINT64": "uint64", "TYPE_INT32": "int32",
-           "TYPE_BOOL": "bool", "TYPE_STRING": "string", "TYPE_BYTES": "bytes", "TYPE_UINT32": "uint32"}
-# Numbers of the fields of FileDescriptorProto, DescriptorProto, EnumDescriptorProto and ServiceDescriptorProto.
+SCALARS = {
+    "TYPE_DOUBLE": "double",
+    "TYPE_FLOAT": "float",
+    "TYPE_INT64": "int64",
+    "TYPE_UINT64": "uint64",
+    "TYPE_INT32": "int32",
+    "TYPE_BOOL": "bool",
+    "TYPE_STRING": "string",
+    "TYPE_BYTES": "bytes",
+    "TYPE_UINT32": "uint32",
+}
+# Numbers of the fields of FileDescriptorProto, DescriptorProto, EnumDescriptorProto and
+# ServiceDescriptorProto.
 MESSAGES, ENUMS, SERVICES, NESTED, NESTED_ENUMS, FIELDS, VALUES, METHODS = 4, 5, 6, 3, 4, 2, 2, 2
 
 
@@ -68,7 +78,11 @@ def enum_lines(enum, name, path, comments):
 
 
 def message_lines(message, name, path, comments, known):
-    maps = {f".lipofill.v1.{name}.{m['name']}": m for m in message.get("nestedType", []) if m.get("options", {}).get("mapEntry")}
+    maps = {
+        f".lipofill.v1.{name}.{m['name']}": m
+        for m in message.get("nestedType", [])
+        if m.get("options", {}).get("mapEntry")
+    }
     oneofs = [o["name"] for o in message.get("oneofDecl", [])]
     rows = []
     for k, field in enumerate(message.get("field", [])):

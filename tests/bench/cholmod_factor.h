@@ -18,13 +18,15 @@ class CholmodFactor {
   CholmodFactor(const Eigen::SparseMatrix<double>& lower, Kind kind, std::vector<int> order = {});
   ~CholmodFactor();
 
-  /// Factors new values in the same pattern. INTERNAL: kSupernodal and not positive definite, or no memory.
+  /// Factors new values in the same pattern. INTERNAL: kSupernodal and not positive definite, or no
+  /// memory.
   absl::Status factorise(const Eigen::SparseMatrix<double>& lower);
   /// One solution a column, until the next call.
   Eigen::Map<const Eigen::MatrixXd> solve(const Eigen::MatrixXd& right_sides);
 
   std::vector<int> order() const;
-  /// The last block of the factor (n, n), lower, rows and columns in the order of order(). kSupernodal.
+  /// The last block of the factor (n, n), lower, rows and columns in the order of order().
+  /// kSupernodal.
   Eigen::MatrixXd last_block(int n) const;
 
  private:

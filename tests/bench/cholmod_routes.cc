@@ -21,8 +21,9 @@ using Kind = CholmodFactor::Kind;
 constexpr int kMostColumns = 1000;
 constexpr int kSampledColumns = 256;
 
-/// C column by column, C = B S^-1 B^T: the paper's way. `block` of them go through the factor side by side. Of more
-/// than kMostColumns only kSampledColumns are done, evenly spread, and the others are counted by their mean.
+/// C column by column, C = B S^-1 B^T: the paper's way. `block` of them go through the factor side
+/// by side. Of more than kMostColumns only kSampledColumns are done, evenly spread, and the others
+/// are counted by their mean.
 class ColumnwiseCompliance : public Route {
  public:
   ColumnwiseCompliance(const LinearStep& step, int block) : factor_(step.s, Kind::kSupernodal), block_(block) {}
@@ -39,7 +40,8 @@ class ColumnwiseCompliance : public Route {
     for (int first = 0; first < n_done; first += block_) add_columns(step, forces, first, n_done, compliance);
     clock.done("compliance");
     result.is_complete = n_done == n;
-    // A sample of C stands in for the whole: a dense factorisation takes the same time whatever the values.
+    // A sample of C stands in for the whole: a dense factorisation takes the same time whatever the
+    // values.
     if (!result.is_complete) compliance.diagonal().setConstant(compliance.cwiseAbs().maxCoeff() * n);
     const VectorXd response = step.b * VectorXd(factor_.solve(step.f));
     clock.done("solve");
@@ -98,8 +100,8 @@ class PressureGradients : public Route {
   PressureCg cg_;
 };
 
-/// One Cholesky factorisation of [S B^T; B e I] with the pressures last, e above the largest eigenvalue of C: its last
-/// block gives C = e I - L22 L22^T.
+/// One Cholesky factorisation of [S B^T; B e I] with the pressures last, e above the largest
+/// eigenvalue of C: its last block gives C = e I - L22 L22^T.
 class AugmentedCholesky : public Route {
  public:
   explicit AugmentedCholesky(const LinearStep& step)

@@ -3,9 +3,9 @@
 
     flame_graph.py PERF_TEXT SVG SHARES_JSON
 
-A box is as wide as the share of samples in which a function was on the stack, with what it called above it; below is the
-call of a step. SHARES_JSON takes the inclusive share of each function. Names are shortened: no namespaces, no template
-arguments. Needs nothing beyond Python.
+A box is as wide as the share of samples in which a function was on the stack, with what it called
+above it; below is the call of a step. SHARES_JSON takes the inclusive share of each function. Names
+are shortened: no namespaces, no template arguments. Needs nothing beyond Python.
 """
 
 import collections
@@ -18,8 +18,14 @@ import sys
 ROOT = "Simulation::advance_step"
 WIDTH, ROW, LEAST_WIDTH = 1200, 17, 1.5
 COLOURS = {
-    "geometry": "#b4a7d6", "solid": "#d98c5f", "film": "#6fa8dc", "coupling": "#93c47d", "mechanics": "#e0a3a3",
-    "step": "#c9b458", "simulation": "#a8a05a", "other": "#b7b7b7",
+    "geometry": "#b4a7d6",
+    "solid": "#d98c5f",
+    "film": "#6fa8dc",
+    "coupling": "#93c47d",
+    "mechanics": "#e0a3a3",
+    "step": "#c9b458",
+    "simulation": "#a8a05a",
+    "other": "#b7b7b7",
 }
 
 
@@ -54,7 +60,7 @@ def read_stacks(text):
         named = [(short_name(symbol), part_of(symbol)) for symbol in frames if symbol != "[unknown]"]
         roots = [k for k, (name, _) in enumerate(named) if name == ROOT]
         if roots:
-            yield named[roots[0]:]
+            yield named[roots[0] :]
 
 
 class Node:
@@ -75,7 +81,9 @@ def build_tree(stacks):
 
 
 def depth_of(node, least_count):
-    return 1 + max((depth_of(child, least_count) for child in node.children.values() if child.count >= least_count), default=-1)
+    return 1 + max(
+        (depth_of(child, least_count) for child in node.children.values() if child.count >= least_count), default=-1
+    )
 
 
 def draw(node, x, level, scale, height, boxes):
@@ -90,8 +98,11 @@ def draw(node, x, level, scale, height, boxes):
 def box(name, part, percent, x, y, width):
     label = name if len(name) * 6.2 < width - 4 else name[: max(0, int((width - 10) / 6.2))]
     text = f'<text x="{x + 3:.1f}" y="{y + 12}">{html.escape(label)}</text>' if len(label) > 2 else ""
-    return (f'<g><title>{html.escape(name)}: {percent:.1f} %</title><rect x="{x:.1f}" y="{y}" width="{max(width - 0.5, 0.5):.1f}" '
-            f'height="{ROW - 1}" rx="1" fill="{COLOURS[part]}"/>{text}</g>')
+    return (
+        f"<g><title>{html.escape(name)}: {percent:.1f} %</title>"
+        f'<rect x="{x:.1f}" y="{y}" width="{max(width - 0.5, 0.5):.1f}" '
+        f'height="{ROW - 1}" rx="1" fill="{COLOURS[part]}"/>{text}</g>'
+    )
 
 
 def make_svg(root):
@@ -100,17 +111,28 @@ def make_svg(root):
     draw(root, 0.0, 0, WIDTH / root.count, height - ROW, boxes)
     legend = "".join(
         f'<rect x="{10 + 120 * k}" y="{height - ROW + 3}" width="12" height="12" fill="{colour}"/>'
-        f'<text x="{27 + 120 * k}" y="{height - ROW + 13}">{part}</text>' for k, (part, colour) in enumerate(COLOURS.items()))
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" font-family="monospace" font-size="10">\n'
-            + f'<rect width="{WIDTH}" height="{height}" fill="#ffffff"/>\n' + "\n".join(boxes) + "\n" + legend + "\n</svg>\n")
+        f'<text x="{27 + 120 * k}" y="{height - ROW + 13}">{part}</text>'
+        for k, (part, colour) in enumerate(COLOURS.items())
+    )
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" '
+        f'font-family="monospace" font-size="10">\n'
+        + f'<rect width="{WIDTH}" height="{height}" fill="#ffffff"/>\n'
+        + "\n".join(boxes)
+        + "\n"
+        + legend
+        + "\n</svg>\n"
+    )
 
 
 def inclusive_shares(stacks):
     counts = collections.Counter()
     for stack in stacks:
         counts.update(set(stack))
-    return [{"function": name, "part": part, "share": count / len(stacks)}
-            for (name, part), count in sorted(counts.items(), key=lambda item: (-item[1], item[0]))]
+    return [
+        {"function": name, "part": part, "share": count / len(stacks)}
+        for (name, part), count in sorted(counts.items(), key=lambda item: (-item[1], item[0]))
+    ]
 
 
 def main():

@@ -13,7 +13,8 @@
 namespace lipofill::bench {
 namespace {
 
-/// The plan with what the daemon would have put there: the scan and the model are passed on as they are.
+/// The plan with what the daemon would have put there: the scan and the model are passed on as they
+/// are.
 absl::StatusOr<client::PlanFile> load_sample_plan() {
   auto plan = client::load_plan(LIPOFILL_EXAMPLES "/plans/jaw_angle.json");
   if (!plan.ok()) return plan;

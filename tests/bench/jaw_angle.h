@@ -11,16 +11,17 @@ namespace lipofill::bench {
 inline constexpr int kTinyScale = 0;
 inline constexpr double kTinyShare = 0.25;
 
-/// The sample plan jaw_angle, which is of the paper's size, and the face shipped with it: what there is to build from.
+/// The sample plan jaw_angle, which is of the paper's size, and the face shipped with it: what
+/// there is to build from.
 struct SampleFace {
   model::FaceModelSpec model;
   plan::SimulationSpec simulation;
   plan::SimulationSpec settled_shape;  ///< the same with that goal: few long steps
 };
 
-/// From client/examples/plans/jaw_angle.json, refined in the plane of the face: `scale` 1, 4, 16 or 64 has as many
-/// hexahedra and film cells as that times those of the plan, kTinyScale kTinyShare of them. INVALID_ARGUMENT for other
-/// scales.
+/// From client/examples/plans/jaw_angle.json, refined in the plane of the face: `scale` 1, 4, 16 or
+/// 64 has as many hexahedra and film cells as that times those of the plan, kTinyScale kTinyShare
+/// of them. INVALID_ARGUMENT for other scales.
 absl::StatusOr<SampleFace> load_sample_face(int scale);
 
 /// The same, built.

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kMetresPerMillimetre = 1e-3;
 
-/// The values of a frame's field; those of a film's cells or of the tissue's nodes come in the order of the model.
+/// The values of a frame's field; those of a film's cells or of the tissue's nodes come in the
+/// order of the model.
 Eigen::VectorXd field_values(const std::vector<simulation::FrameField>& fields, const std::string& name, double unit) {
   const auto field = std::find_if(fields.begin(), fields.end(), [&name](const auto& f) { return f.name == name; });
   return unit * Eigen::Map<const Eigen::VectorXf>(field->values.data(), static_cast<Eigen::Index>(field->values.size()))

@@ -41,10 +41,12 @@ class StepParts {
 
   /// Takes positions, thickness and pressure of the simulation's frame.
   void move_to(const simulation::Simulation& simulation);
-  /// The tissue waved by a millimetre over a film of half a millimetre or more: work like that of a run, at no cost.
+  /// The tissue waved by a millimetre over a film of half a millimetre or more: work like that of a
+  /// run, at no cost.
   void move_to_wave();
 
-  /// The element work of a step: forces, stiffness and gap where move_to() has put the tissue, for steps of the plan.
+  /// The element work of a step: forces, stiffness and gap where move_to() has put the tissue, for
+  /// steps of the plan.
   void assemble();
 
   /// The step that follows from there, from rest.
@@ -75,7 +77,8 @@ class StepParts {
   Eigen::VectorXd pressure_;   ///< [Pa] (n_cells)
 };
 
-/// How far two answers are apart, relative to the second: the larger of pressure's and displacement's, in the 2-norm.
+/// How far two answers are apart, relative to the second: the larger of pressure's and
+/// displacement's, in the 2-norm.
 double relative_difference(const LinearAnswer& answer, const LinearAnswer& reference);
 
 }  // namespace lipofill::bench

@@ -1,6 +1,7 @@
-// lipofill_bench: how fast a step is and by which way, everything in one run and in turn, so that what else the machine
-// does meets all alike. Exit codes: 0; 1 when a simulation fails or two ways to the same answer disagree; 2 for options
-// that cannot be. How long things take is never an error.
+// lipofill_bench: how fast a step is and by which way, everything in one run and in turn, so that
+// what else the machine does meets all alike. Exit codes: 0; 1 when a simulation fails or two ways
+// to the same answer disagree; 2 for options that cannot be. How long things take is never an
+// error.
 
 #include <malloc.h>
 #include <omp.h>

@@ -4,8 +4,9 @@
     make_page.py BENCH_JSON PAGE [--micro JSON] [--service JSON] [--shares JSON --flame SVG]
     make_page.py --check BENCH_JSON                exit code 1 where the page would lack figures
 
-BENCH_JSON is of lipofill_bench, --micro of lipofill_microbench, --service of lipofill_service_bench, --shares and --flame
-of flame_graph.py. What is not given is left out of the page. The same files give the same bytes.
+BENCH_JSON is of lipofill_bench, --micro of lipofill_microbench, --service of
+lipofill_service_bench, --shares and --flame of flame_graph.py. What is not given is left out of the
+page. The same files give the same bytes.
 """
 
 import argparse
@@ -15,9 +16,26 @@ import os
 import pathlib
 import sys
 
-KEYS = ("step_ms_mean", "step_ms_p99", "paper_way_step_ms", "floor_ms", "ratio_to_floor", "speedup_vs_paper_way", "growth_4x",
-        "growth_16x", "settle_wall_s", "settle_fast_wall_s", "session_mb", "state_hash", "scales", "bounds", "machine", "rounds",
-        "settled", "injecting_steps")
+KEYS = (
+    "step_ms_mean",
+    "step_ms_p99",
+    "paper_way_step_ms",
+    "floor_ms",
+    "ratio_to_floor",
+    "speedup_vs_paper_way",
+    "growth_4x",
+    "growth_16x",
+    "settle_wall_s",
+    "settle_fast_wall_s",
+    "session_mb",
+    "state_hash",
+    "scales",
+    "bounds",
+    "machine",
+    "rounds",
+    "settled",
+    "injecting_steps",
+)
 PHASES = ("step", "frame", "encoding")
 PARTS = ("element", "factor", "solve", "film", "coupling")
 INTRODUCTION = """# Performance
@@ -54,8 +72,10 @@ def name_of(scale):
 
 
 def title_of(scale):
-    return (f"### {name_of(scale)}: {scale['hexahedra']:,} hexahedra, {scale['unknowns']:,} unknowns, "
-            f"{scale['film_cells']:,} film cells")
+    return (
+        f"### {name_of(scale)}: {scale['hexahedra']:,} hexahedra, {scale['unknowns']:,} unknowns, "
+        f"{scale['film_cells']:,} film cells"
+    )
 
 
 def bounds_table(bench):
@@ -79,8 +99,11 @@ def step_table(step, parts, more=()):
 
 
 def counts(parts):
-    return "A step has, in the mean, " + ", ".join(
-        f"{number(count)} {name.replace('_', ' ')}" for name, count in parts["per_step"].items()) + "."
+    return (
+        "A step has, in the mean, "
+        + ", ".join(f"{number(count)} {name.replace('_', ' ')}" for name, count in parts["per_step"].items())
+        + "."
+    )
 
 
 def step_parts(bench):
@@ -105,24 +128,35 @@ def routes_table(scale):
         if route["total"] is None:
             rows.append((name, "-", "-", "-", "-", "-"))
             continue
-        rows.append((name, number(route["total"]["median_ms"]) + ("" if route["is_complete"] else " *"),
-                     number(route["phases"]["factor"]["median_ms"]), number(route["analysis_ms"]),
-                     str(route["iterations"] or "direct"), number(route["relative_difference"])))
+        rows.append(
+            (
+                name,
+                number(route["total"]["median_ms"]) + ("" if route["is_complete"] else " *"),
+                number(route["phases"]["factor"]["median_ms"]),
+                number(route["analysis_ms"]),
+                str(route["iterations"] or "direct"),
+                number(route["relative_difference"]),
+            )
+        )
     return table(("ms", "all", "of it, factor", "analysis, once", "iterations", "difference"), rows)
 
 
 def route_parts(bench):
     yield "## Ways to solve a step"
-    yield ("One linear step from the matrices of the run, S and B of its deformed state. *Difference*: of the answer, pressure or displacement, from a "
-           "reference corrected in extended precision. A star: C is extrapolated from 256 of its columns. The floor is the element work and the fastest "
-           "library's factor and one solve in double precision; a step of a simulation is below it where one factor serves many steps.")
+    yield (
+        "One linear step from the matrices of the run, S and B of its deformed state. *Difference*: of the answer, pressure or displacement, from a "
+        "reference corrected in extended precision. A star: C is extrapolated from 256 of its columns. The floor is the element work and the fastest "
+        "library's factor and one solve in double precision; a step of a simulation is below it where one factor serves many steps."
+    )
     for scale in bench["scales"]:
         if not scale["routes"]:
             continue
         yield title_of(scale)
         yield routes_table(scale)
-        yield (f"Element work {number(scale['element_work']['median_ms'])} ms, floor {number(scale['floor_ms'])} ms, the paper's way "
-               f"{number(scale['paper_way_step_ms'])} ms, mean step of the simulation {number(mean_step(scale))} ms.")
+        yield (
+            f"Element work {number(scale['element_work']['median_ms'])} ms, floor {number(scale['floor_ms'])} ms, the paper's way "
+            f"{number(scale['paper_way_step_ms'])} ms, mean step of the simulation {number(mean_step(scale))} ms."
+        )
 
 
 def mean_step(scale):
@@ -152,7 +186,7 @@ def growth_parts(bench):
     for scale in bench["scales"]:
         n = scale["hexahedra"] / first["hexahedra"]
         log = 1.0 + math.log(n) / math.log(first["unknowns"])
-        laws.append((name_of(scale), "", "", number(n), number(n ** 1.5), number(n * log), number(n), ""))
+        laws.append((name_of(scale), "", "", number(n), number(n**1.5), number(n * log), number(n), ""))
     yield "## Growth"
     yield "Over the first size; *factor*: of one factorisation, *solve*: of one pair of half solves."
     yield table(("", "mean step [ms]", "step", "element", "factor", "solve", "film", "memory at the most [MB]"), rows)
@@ -161,9 +195,18 @@ def growth_parts(bench):
 
 
 def settled_parts(bench):
-    rows = [(name.replace("_", " "), number(run["wall_s"]), number(run["cpu_s"]), number(run["steps"]), number(run["simulated_s"]),
-             number(run["skin_max_displacement_mm"], 4), f"`{run['state_hash'][:16]}`")
-            for name, run in bench["settled"].items()]
+    rows = [
+        (
+            name.replace("_", " "),
+            number(run["wall_s"]),
+            number(run["cpu_s"]),
+            number(run["steps"]),
+            number(run["simulated_s"]),
+            number(run["skin_max_displacement_mm"], 4),
+            f"`{run['state_hash'][:16]}`",
+        )
+        for name, run in bench["settled"].items()
+    ]
     yield "## To the settled shape"
     yield "From the first step on, by the plan's own steps and with the goal SETTLED_SHAPE (`lipofill run --fast`)."
     yield table(("", "wall [s]", "processor [s]", "steps", "simulated [s]", "largest displacement [mm]", "state"), rows)
@@ -172,12 +215,17 @@ def settled_parts(bench):
 
 def flame_parts(shares, image):
     yield "## Where the time goes"
-    yield ("Samples of the stack during all steps of the plan, by `perf`: the wider a box, the larger the share of time in it and in what it calls, which "
-           "lies above it.")
+    yield (
+        "Samples of the stack during all steps of the plan, by `perf`: the wider a box, the larger the share of time in it and in what it calls, which "
+        "lies above it."
+    )
     if image:
         yield f"![Flame graph of a step]({image})"
-    rows = [(f"`{entry['function']}`", entry["part"], f"{100.0 * entry['share']:.1f} %")
-            for entry in shares["functions"] if entry["share"] >= 0.03 and entry["part"] != "other"]
+    rows = [
+        (f"`{entry['function']}`", entry["part"], f"{100.0 * entry['share']:.1f} %")
+        for entry in shares["functions"]
+        if entry["share"] >= 0.03 and entry["part"] != "other"
+    ]
     yield f"Functions of the model with 3 % or more of {number(shares['samples'])} samples, what they call included:"
     yield table(("", "part", "share"), rows)
 
@@ -196,11 +244,17 @@ def micro_parts(micro):
         row = [name.replace("_", " ")]
         for size in ("1", "4", "16"):
             run = runs.get(size)
-            row += [number(run["cpu_time"] * unit[run["time_unit"]]), number(run["items_per_second"] / 1e6)] if run else ["-", "-"]
+            row += (
+                [number(run["cpu_time"] * unit[run["time_unit"]]), number(run["items_per_second"] / 1e6)]
+                if run
+                else ["-", "-"]
+            )
         rows.append(tuple(row))
     yield "## Parts one by one"
-    yield ("Google Benchmark, `lipofill_microbench`: milliseconds, and millions of items a second, which are hexahedra, film cells, unknowns, triangles or frames. "
-           "Work that is linear in its size keeps its rate.")
+    yield (
+        "Google Benchmark, `lipofill_microbench`: milliseconds, and millions of items a second, which are hexahedra, film cells, unknowns, triangles or frames. "
+        "Work that is linear in its size keeps its rate."
+    )
     yield table(("", "1x ms", "M/s", "4x ms", "M/s", "16x ms", "M/s"), rows)
 
 
@@ -208,20 +262,46 @@ def service_parts(service):
     yield "## A running daemon"
     if "sessions" in service:
         yield "Sessions of one model at once:"
-        yield table(("sessions", "workers", "steps/s", "fairness", "processor ms a step", "threads", "MB a session"),
-                    [(number(row["sessions"]), number(row["workers"]), number(row["steps_per_s"]), number(row["fairness"]),
-                      number(row["worker_cpu_ms_per_step"]), number(row["threads"]), number(row["running_mb_per_session"]))
-                     for row in service["sessions"]])
+        yield table(
+            ("sessions", "workers", "steps/s", "fairness", "processor ms a step", "threads", "MB a session"),
+            [
+                (
+                    number(row["sessions"]),
+                    number(row["workers"]),
+                    number(row["steps_per_s"]),
+                    number(row["fairness"]),
+                    number(row["worker_cpu_ms_per_step"]),
+                    number(row["threads"]),
+                    number(row["running_mb_per_session"]),
+                )
+                for row in service["sessions"]
+            ],
+        )
     if "viewers" in service:
         yield "Viewers of one simulation; *processor* of its worker, *transport* of the threads that send:"
-        yield table(("viewers", "steps/s", "processor ms a step", "of the first row", "transport ms a step"),
-                    [(number(row["viewers"]), number(row["steps_per_s"]), number(row["worker_cpu_ms_per_step"]),
-                      number(row["worker_cpu_of_first_row"]), number(row["transport_cpu_ms_per_step"])) for row in service["viewers"]])
+        yield table(
+            ("viewers", "steps/s", "processor ms a step", "of the first row", "transport ms a step"),
+            [
+                (
+                    number(row["viewers"]),
+                    number(row["steps_per_s"]),
+                    number(row["worker_cpu_ms_per_step"]),
+                    number(row["worker_cpu_of_first_row"]),
+                    number(row["transport_cpu_ms_per_step"]),
+                )
+                for row in service["viewers"]
+            ],
+        )
     for startup in service.get("startup", []):
         yield f"From the scan's file to the first frame, `{startup['scan']}`, {number(startup['served']['triangles'])} triangles:"
-        yield table(("", "wall ms", "processor ms"),
-                    [(phase["phase"], number(phase["wall_ms"]), number(phase["cpu_ms"])) for phase in startup["served"]["phases"]]
-                    + [("**first frame**", number(startup["served"]["first_frame_ms"]), "")])
+        yield table(
+            ("", "wall ms", "processor ms"),
+            [
+                (phase["phase"], number(phase["wall_ms"]), number(phase["cpu_ms"]))
+                for phase in startup["served"]["phases"]
+            ]
+            + [("**first frame**", number(startup["served"]["first_frame_ms"]), "")],
+        )
 
 
 def sections(bench, micro=None, service=None, shares=None, image=None):
@@ -247,8 +327,11 @@ def missing_figures(bench):
     for scale in bench.get("scales", []):
         missing += [f"{name_of(scale)} {phase}" for phase in PHASES if phase not in scale["steps"]["phases"]]
         missing += [f"{name_of(scale)} {part}" for part in PARTS if part not in scale["steps"]["parts"]["times"]]
-        missing += [f"{name_of(scale)} {route['name']}, whose library is there" for route in scale["routes"]
-                    if route["total"] is None and scale["scale"] < 1 and not route["what"].startswith("not measured")]
+        missing += [
+            f"{name_of(scale)} {route['name']}, whose library is there"
+            for route in scale["routes"]
+            if route["total"] is None and scale["scale"] < 1 and not route["what"].startswith("not measured")
+        ]
     return missing
 
 

@@ -7,7 +7,8 @@
 
 namespace lipofill::bench {
 
-/// A span of time. Ratios come from the processor time of this thread: what else a machine does leaves that alone.
+/// A span of time. Ratios come from the processor time of this thread: what else a machine does
+/// leaves that alone.
 struct Span {
   double wall_s = 0.0;
   double cpu_s = 0.0;

@@ -7,7 +7,8 @@
 
 namespace lipofill::bench {
 
-/// Memory of this process that is in RAM now, and its largest value since forget_peak() [MB]. 0 where /proc is missing.
+/// Memory of this process that is in RAM now, and its largest value since forget_peak() [MB]. 0
+/// where /proc is missing.
 double resident_mb();
 double peak_resident_mb();
 void forget_peak();

@@ -9,9 +9,9 @@
 
 namespace lipofill::bench {
 
-/// MUMPS as it comes: multifrontal L D L^T of a symmetric matrix given by its lower triangle, in double or single
-/// precision, without pivoting; optionally with the last unknowns kept apart as its Schur complement. Real is double or
-/// float.
+/// MUMPS as it comes: multifrontal L D L^T of a symmetric matrix given by its lower triangle, in
+/// double or single precision, without pivoting; optionally with the last unknowns kept apart as
+/// its Schur complement. Real is double or float.
 template <typename Real>
 class MumpsFactor {
  public:

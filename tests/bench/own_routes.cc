@@ -15,8 +15,9 @@ using coupling::FactorAnalysis;
 using coupling::Precision;
 using Eigen::VectorXd;
 
-/// Factor of [S B^T; B 0] up to the pressures, which leaves C; dense J + C; and the same again on what is left of both
-/// equations until that is small. A step of a simulation does not correct: its next iteration does.
+/// Factor of [S B^T; B 0] up to the pressures, which leaves C; dense J + C; and the same again on
+/// what is left of both equations until that is small. A step of a simulation does not correct: its
+/// next iteration does.
 class OwnFactor : public Route {
  public:
   OwnFactor(std::shared_ptr<const FactorAnalysis> analysis, Precision precision)

@@ -8,7 +8,8 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int kMaxIterations = 500;
-/// C has negative entries on curved layers; a lumped cell keeps this share of the largest, so that J + R is definite.
+/// C has negative entries on curved layers; a lumped cell keeps this share of the largest, so that
+/// J + R is definite.
 constexpr double kLeastShare = 1e-6;
 
 VectorXd times_compliance(const LinearStep& step, CholmodFactor& factor, const VectorXd& p) {

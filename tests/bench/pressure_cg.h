@@ -8,7 +8,8 @@
 
 namespace lipofill::bench {
 
-/// Conjugate gradients for (J + C) p = r, C = B S^-1 B^T by a solve with S, preconditioned by J + R with R = diag(C 1).
+/// Conjugate gradients for (J + C) p = r, C = B S^-1 B^T by a solve with S, preconditioned by J + R
+/// with R = diag(C 1).
 class PressureCg {
  public:
   explicit PressureCg(const LinearStep& step, double tolerance = 1e-10) : tolerance_(tolerance) {

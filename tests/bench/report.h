@@ -17,13 +17,14 @@ struct Findings {
   int rounds = 0;
   std::vector<std::unique_ptr<ScaleBench>> scales;  ///< ascending; the first is what the bounds are for
   std::vector<SettledRun> as_planned;               ///< one a round
-  std::vector<SettledRun> settled_shape;            ///< with that goal, one a round
+  std::vector<SettledRun> settled_shape;            ///< each round has one run with that goal
   SessionMemory memory;
   nlohmann::ordered_json beyond =
-      nlohmann::ordered_json::array();  ///< of scales too large to be held beside the others
+      nlohmann::ordered_json::array();  ///< has scales too large to be held beside the others
 };
 
-/// The content of bench.json. Times are processor time of the one thread that works, but for names with `wall`.
+/// The content of bench.json. Times are processor time of the one thread that works, but for names
+/// with `wall`.
 nlohmann::ordered_json make_report(const Findings& findings);
 
 /// The report for people.

@@ -23,7 +23,8 @@ struct RouteRun {
   bool is_complete = true;  ///< false: a stated sample of the work, and no answer
 };
 
-/// A way to solve a linear step. Patterns are analysed when it is made; each run takes the values anew.
+/// A way to solve a linear step. Patterns are analysed when it is made; each run takes the values
+/// anew.
 class Route {
  public:
   virtual ~Route() = default;
@@ -47,8 +48,8 @@ std::vector<RouteKind> cholmod_routes();
 std::vector<RouteKind> eigen_routes();
 std::vector<RouteKind> mumps_routes();
 
-/// An answer good to round-off: conjugate gradients on the pressure over a factor of S, twice corrected by residuals in
-/// extended precision. Independent of what is measured.
+/// An answer good to round-off: conjugate gradients on the pressure over a factor of S, twice
+/// corrected by residuals in extended precision. Independent of what is measured.
 absl::StatusOr<LinearAnswer> compute_reference(const LinearStep& step);
 
 }  // namespace lipofill::bench

@@ -21,7 +21,7 @@ struct MeasuredRoute {
   Samples total;
   int iterations = 0;
   bool is_complete = true;
-  double relative_difference = 0.0;  ///< of its answer from the reference; the worst of all runs
+  double relative_difference = 0.0;  ///< its answer differs from the reference so much in the worst run
 
   nlohmann::ordered_json to_json() const;
 };
@@ -29,7 +29,8 @@ struct MeasuredRoute {
 /// Answers of routes may differ by this from the reference.
 inline constexpr double kAnswerTolerance = 1e-7;
 
-/// Everything that is measured on jaw_angle at one scale: whole steps, and the ways to solve a linear step of theirs.
+/// Everything that is measured on jaw_angle at one scale: whole steps, and the ways to solve a
+/// linear step of theirs.
 class ScaleBench {
  public:
   static absl::StatusOr<std::unique_ptr<ScaleBench>> create(int scale, bool with_routes);
@@ -43,11 +44,14 @@ class ScaleBench {
   const std::vector<MeasuredRoute>& routes() const { return routes_; }
   const MeasuredRoute* find_route(const std::string& name) const;
 
-  /// Factor and one solve by the library that is fastest at it, and the element work [ms]; NaN without routes.
+  /// Factor and one solve by the library that is fastest at it, and the element work [ms]; NaN
+  /// without routes.
   double floor_ms() const;
-  /// Element work, factor, C a column at a time, dense solve, displacement [ms]; NaN without routes.
+  /// Element work, factor, C a column at a time, dense solve, displacement [ms]; NaN without
+  /// routes.
   double paper_way_ms() const;
-  /// The first route whose answer differs by more than kAnswerTolerance, as a sentence; empty: none.
+  /// The first route whose answer differs by more than kAnswerTolerance, as a sentence; empty:
+  /// none.
   std::string disagreement() const;
 
   nlohmann::ordered_json to_json() const;
@@ -65,7 +69,7 @@ class ScaleBench {
   LinearAnswer reference_;
   Samples element_work_;
   std::vector<MeasuredRoute> routes_;
-  double peak_mb_ = 0.0;  ///< of whole steps alone
+  double peak_mb_ = 0.0;  ///< whole steps alone came to it
 };
 
 }  // namespace lipofill::bench

@@ -35,7 +35,7 @@ absl::StatusOr<std::unique_ptr<WholeSteps>> WholeSteps::create(const JawAngle& j
   auto simulation = Simulation::create(jaw.model, jaw.spec);
   if (!simulation.ok()) return simulation.status();
   if (const absl::Status status = (*simulation)->restore(snapshot); !status.ok()) return status;
-  (*simulation)->advance_step();  // of the size of those before it
+  (*simulation)->advance_step();  // it is as long as those before it
   return std::unique_ptr<WholeSteps>(new WholeSteps(*std::move(simulation)));
 }
 
@@ -52,7 +52,8 @@ absl::Status WholeSteps::advance(int n_steps) {
   return absl::OkStatus();
 }
 
-/// A frame of some meshes, all when empty, and its encoding, for one viewer or for fifty: they share it.
+/// A frame of some meshes, all when empty, and its encoding, for one viewer or for fifty: they
+/// share it.
 void WholeSteps::take_frame(const std::vector<std::string>& meshes, const std::string& suffix) {
   Stopwatch watch;
   server::Frame frame;

@@ -14,8 +14,9 @@
 
 namespace lipofill::bench {
 
-/// Steps of the plan's own size in the midst of its injection, as a session takes them: advance, take a frame of what
-/// viewers see by default, encode it. The same simulated time at every scale, so that scales can be compared.
+/// Steps of the plan's own size in the midst of its injection, as a session takes them: advance,
+/// take a frame of what viewers see by default, encode it. The same simulated time at every scale,
+/// so that scales can be compared.
 class WholeSteps {
  public:
   /// Goes to the midst of the injection in larger steps, which are not measured.
@@ -41,9 +42,9 @@ class WholeSteps {
 
 /// One run of a plan from pressing run to the settled shape.
 struct SettledRun {
-  Span stepping;      ///< from the first step to the last
+  Span stepping;      ///< it runs from the first step to the last
   Span creation;      ///< before the first step
-  StepCosts costs;    ///< of the same steps
+  StepCosts costs;    ///< the same steps took these
   Samples injecting;  ///< steps of the plan's size while fat flows in
   int steps = 0;
   double simulated_s = 0.0;

@@ -1,5 +1,5 @@
-// The file of a checkpoint: the first byte says whether the rest is the whole file, or only the body, to which a header
-// that fits is added: no made-up input ever has the right hash.
+// The file of a checkpoint: the first byte says whether the rest is the whole file, or only the
+// body, to which a header that fits is added: no made-up input ever has the right hash.
 
 #include "absl/strings/escaping.h"
 #include "core/base/hash.h"

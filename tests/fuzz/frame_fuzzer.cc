@@ -1,5 +1,5 @@
-// What a client makes of a stream of messages: the input is messages of lipofill.v1.WatchResponse, each after its
-// length in two bytes, the lower one first.
+// What a client makes of a stream of messages: the input is messages of lipofill.v1.WatchResponse,
+// each after its length in two bytes, the lower one first.
 
 #include "client/cpp/array_assembler.h"
 #include "tests/fuzz/target.h"

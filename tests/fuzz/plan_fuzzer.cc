@@ -1,4 +1,5 @@
-// A plan on its way from its file to what the solver takes: the client's parser, then the daemon's checks.
+// A plan on its way from its file to what the solver takes: the client's parser, then the daemon's
+// checks.
 
 #include "client/cpp/plan_file.h"
 #include "core/plan/plan_checks.h"

@@ -1,5 +1,5 @@
-// Bytes that claim to be the state of a simulation: taken, they must be a state that can go on; refused, the simulation
-// is as it was.
+// Bytes that claim to be the state of a simulation: taken, they must be a state that can go on;
+// refused, the simulation is as it was.
 
 #include "core/simulation/simulation.h"
 #include "tests/fuzz/target.h"

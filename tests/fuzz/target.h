@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-/// What a target does with one input: it returns 0, or it has found a defect. libFuzzer calls it with inputs it makes
-/// up; replay.cc with those of the corpus.
+/// What a target does with one input: it returns 0, or it has found a defect. libFuzzer calls it
+/// with inputs it makes up; replay.cc with those of the corpus.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 
 namespace lipofill::fuzz {

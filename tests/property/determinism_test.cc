@@ -1,4 +1,5 @@
-// The same plan gives the same bytes: run again, and from many threads at once. Bytes that are no snapshot are refused.
+// The same plan gives the same bytes: run again, and from many threads at once. Bytes that are no
+// snapshot are refused.
 
 #include <gtest/gtest.h>
 
@@ -71,7 +72,8 @@ std::string hash_of_a_square_of_its_own() {
   return hash_after(*simulation.value(), 8);
 }
 
-// Each thread orders its own tissue with METIS, which calls rand(); so does another thread all the while.
+// Each thread orders its own tissue with METIS, which calls rand(); so does another thread all the
+// while.
 TEST(Determinism, ManyModelsAnalysedAtOnceGiveTheSameBytes) {
   constexpr int kThreads = 4, kRounds = 60;
   const std::string alone = hash_of_a_square_of_its_own();

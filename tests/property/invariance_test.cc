@@ -1,4 +1,5 @@
-// A face is the same face in another frame, with its vertices in another order, and in another size.
+// A face is the same face in another frame, with its vertices in another order, and in another
+// size.
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -57,7 +58,8 @@ RC_GTEST_PROP(Invariance, AFaceTurnedAndMovedIsTheSameFace, ()) {
   RC_ASSERT(difference(turn.transpose() * there, run_on_scan(make_region(), spec)) <= 1e-5);
 }
 
-/// The same surface with its vertices and triangles in another order, each triangle begun at another corner.
+/// The same surface with its vertices and triangles in another order, each triangle begun at
+/// another corner.
 geometry::SurfaceMesh renumber(const geometry::SurfaceMesh& mesh, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<int> place(static_cast<size_t>(mesh.n_vertices()));
@@ -85,7 +87,8 @@ geometry::ScalarField scaled(double value, double size) {
   return geometry::ScalarField::constant(value * size);
 }
 
-/// The small model `size` times as large. Inertia, rho L^2 / (E t^2), stays with the density divided by size^2.
+/// The small model `size` times as large. Inertia, rho L^2 / (E t^2), stays with the density
+/// divided by size^2.
 model::FaceModelSpec scale_model(double size) {
   model::FaceModelSpec face = make_small_model_spec();
   face.region = geometry::SquareSpec{0.048 * size, 0.048 * size};
@@ -95,7 +98,8 @@ model::FaceModelSpec scale_model(double size) {
   return face;
 }
 
-/// The plan for it: lengths times `size`, volumes and their rates times size^3; times, pressures and viscosity stay.
+/// The plan for it: lengths times `size`, volumes and their rates times size^3; times, pressures
+/// and viscosity stay.
 plan::SimulationSpec scale_plan(plan::SimulationSpec spec, double size) {
   spec.films[0].rest_thickness = scaled(0.05e-3, size);
   for (plan::InjectionSpec& injection : spec.injections) {
@@ -107,7 +111,8 @@ plan::SimulationSpec scale_plan(plan::SimulationSpec spec, double size) {
   return spec;
 }
 
-/// The flux of a film of fat, -h^3 / (12 mu) grad p, gives the same time to each size: Newtonian or not.
+/// The flux of a film of fat, -h^3 / (12 mu) grad p, gives the same time to each size: Newtonian or
+/// not.
 RC_GTEST_PROP(Invariance, AFaceOfAnotherSizeIsSimilar, ()) {
   const plan::SimulationSpec spec = pick_plan();
   const double size = pick("size", 0.8, 1.25);

@@ -11,7 +11,8 @@
 
 namespace lipofill::simulation {
 
-/// A number between `low` and `high`, of a hundred steps: failing cases shrink towards `low`, and print it by its name.
+/// A number between `low` and `high`, of a hundred steps: failing cases shrink towards `low`, and
+/// print it by its name.
 inline double pick(const std::string& name, double low, double high) {
   return *rc::gen::map(rc::gen::inRange(0, 101), [=](int k) { return low + (high - low) * k / 100.0; }).as(name);
 }
@@ -32,7 +33,8 @@ inline plan::InjectionSpec pick_injection() {
   return injection;
 }
 
-/// The small plan with two zones and up to three injections, one after the other; it does not end by itself.
+/// The small plan with two zones and up to three injections, one after the other; it does not end
+/// by itself.
 inline plan::SimulationSpec pick_plan() {
   plan::SimulationSpec spec = make_small_plan();
   spec.films[0].zones = {{"left", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}},

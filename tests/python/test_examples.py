@@ -26,7 +26,16 @@ def run_example(name, *arguments, **environment):
 
 def test_a_stiffer_skin_rises_less_under_more_pressure(tmp_path, daemon):
     done = run_example(
-        "sweep_stiffness.py", PLANS / "jaw_angle.json", "--out", tmp_path, "--moduli-kpa", 90, 200, 500, "--server", daemon.server
+        "sweep_stiffness.py",
+        PLANS / "jaw_angle.json",
+        "--out",
+        tmp_path,
+        "--moduli-kpa",
+        90,
+        200,
+        500,
+        "--server",
+        daemon.server,
     )
     assert done.returncode == 0, done.stderr
     rows = list(csv.DictReader(open(tmp_path / "sweep.csv")))

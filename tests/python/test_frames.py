@@ -1,4 +1,6 @@
-"""Frames: arrays over the bytes of the messages, every one of them, coded, acknowledged, and meshes that come once."""
+"""Frames: arrays over the bytes of the messages, every one of them, coded, acknowledged, and meshes
+that come once.
+"""
 
 import numpy as np
 import pytest

@@ -25,7 +25,8 @@ def mypy(*arguments, cwd=BUILT):
 def test_the_types_hold(tmp_path):
     done = mypy("-p", "lipofill")
     assert done.returncode == 0, done.stdout
-    user = "import lipofill\n\ndef lift(run: lipofill.Run) -> float:\n    return run.wait().summary.skin_max_displacement_mm\n"
+    lift = "def lift(run: lipofill.Run) -> float:\n    return run.wait().summary.skin_max_displacement_mm\n"
+    user = f"import lipofill\n\n{lift}"
     (tmp_path / "user.py").write_text(user)
     assert mypy(str(tmp_path / "user.py")).returncode == 0
     wrong = user + "\nlipofill.Plan('a').inject('b', volume='1')\nlipofill.Connection().patients.get(1)\n"
@@ -39,7 +40,9 @@ def test_the_package_installs(tmp_path):
     source = tmp_path / "source"
     subprocess.run(["cp", "-rL", str(BUILT), str(source)], check=True)
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    done = subprocess.run([*pip, "--target", tmp_path / "site", source], capture_output=True, text=True, env=environment)
+    done = subprocess.run(
+        [*pip, "--target", tmp_path / "site", source], capture_output=True, text=True, env=environment
+    )
     assert done.returncode == 0, done.stderr
     for name in ("py.typed", "v1/plan_pb2.pyi", "v1/frame_service_pb2_grpc.pyi", "google_rpc/own/status_pb2.py"):
         assert (tmp_path / "site" / "lipofill" / name).exists(), name

@@ -1,4 +1,6 @@
-"""The daemon is killed (SIGKILL) and started again: streams, uploads, calls and results go on as if nothing had happened."""
+"""The daemon is killed (SIGKILL) and started again: streams, uploads, calls and results go on as if
+nothing had happened.
+"""
 
 import signal
 import threading
@@ -18,7 +20,9 @@ PATIENT = lipofill.RetryPolicy(patience_s=30)
 @pytest.fixture
 def mortal():
     """A daemon for one test, with its state kept often."""
-    with lipofill.Daemon(arguments=["--workers", "2", "--checkpoint-interval-s", "0.05", "--drain-delay-s", "1"]) as running:
+    with lipofill.Daemon(
+        arguments=["--workers", "2", "--checkpoint-interval-s", "0.05", "--drain-delay-s", "1"]
+    ) as running:
         yield running
 
 
@@ -153,7 +157,8 @@ def test_an_upload_of_which_only_the_end_is_missing_is_completed(tmp_path, morta
     announced = patient_connection.scans.announce(patient, tmp_path / "sheet.obj")
 
     def kill_when_all_is_there():
-        # What was received is then read as a surface, which takes a while: the daemon does not come to its end.
+        # What was received is then read as a surface, which takes a while: the daemon does not come
+        # to its end.
         while patient_connection.scans.get(announced.name).received_bytes < size:
             pass
         restart(mortal)

@@ -79,7 +79,9 @@ def test_the_meshes_of_a_model_can_be_fetched(jaw, connection):
 def test_the_surface_of_a_scan_can_be_fetched(jaw, connection):
     (scan,) = connection.scans.list(jaw[0].patient)
     meshes = connection.scans.download_mesh(scan.name)
-    assert meshes["scan.points"].shape == (scan.report.vertices, 3) and len(meshes["scan.cells"]) == scan.report.triangles
+    assert (
+        meshes["scan.points"].shape == (scan.report.vertices, 3) and len(meshes["scan.cells"]) == scan.report.triangles
+    )
 
 
 def test_the_tissue_can_be_exported(jaw):
@@ -135,7 +137,9 @@ def test_what_is_only_checked_is_not_kept(connection, plate):
         assert not found.violations and found.zones[0].area_cm2 > 0 and found.zones[0].outline
         spoilt = run.get().spec
         spoilt.fat.density_kg_m3 = -1
-        assert [each.field for each in connection.simulations.check_plan(spoilt).violations] == ["spec.fat.density_kg_m3"]
+        assert [each.field for each in connection.simulations.check_plan(spoilt).violations] == [
+            "spec.fat.density_kg_m3"
+        ]
         assert [each.name for each in connection.simulations.list()] == before
 
 

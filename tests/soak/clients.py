@@ -65,7 +65,9 @@ def plate() -> lipofill.Plan:
 
 
 class Runner(Client):
-    """Carries out plans, steers some of them, and checks every ledger and the state of those nobody steered."""
+    """Carries out plans, steers some of them, and checks every ledger and the state of those nobody
+    steered.
+    """
 
     def __init__(self, options: Runners, folder: pathlib.Path, *arguments: object) -> None:
         super().__init__(*arguments)  # type: ignore[arg-type]
@@ -105,7 +107,9 @@ class Runner(Client):
             self.journal.note_hash(plan_key(plan), ended.summary.state_hash)
 
     def steer(self, run: lipofill.Simulation, plan: lipofill.Plan) -> tuple[float, bool]:
-        """What a planner does while it runs; how much was injected besides, and whether the result is another for it."""
+        """What a planner does while it runs; how much was injected besides, and whether the result
+        is another for it.
+        """
         try:
             return self._steer(run, plan)
         except lipofill.FailedPreconditionError:
@@ -244,7 +248,9 @@ class Viewer(Client):
         step = frame.sequence - last.sequence
         in_order = step == 1 if self.options.delivery == "EVERY" else step >= 1
         if frame.epoch < last.epoch or (frame.epoch == last.epoch and not in_order):
-            self.journal.complain(f"{name}: frame {frame.sequence} of epoch {frame.epoch} after {last.sequence} of {last.epoch}")
+            self.journal.complain(
+                f"{name}: frame {frame.sequence} of epoch {frame.epoch} after {last.sequence} of {last.epoch}"
+            )
 
     def watch_process(self, name: str) -> None:
         """A viewer in a process of its own, that is killed, or frozen first."""
@@ -263,9 +269,16 @@ class Reaper(threading.Thread):
     """Ends the daemon now and then, by SIGKILL or SIGTERM, and starts it again."""
 
     def __init__(
-        self, daemon: lipofill.Daemon, end: Callable[[], object], what: str, span_s: tuple[float, float], lock: threading.Lock,
-        journal: Journal, stop: threading.Event, seed: int,
-    ) -> None:  # fmt: skip
+        self,
+        daemon: lipofill.Daemon,
+        end: Callable[[], object],
+        what: str,
+        span_s: tuple[float, float],
+        lock: threading.Lock,
+        journal: Journal,
+        stop: threading.Event,
+        seed: int,
+    ) -> None:
         super().__init__(name=what, daemon=True)
         self.daemon_process, self.end, self.what, self.span_s = daemon, end, what, span_s
         self.lock, self.journal, self.stop = lock, journal, stop

@@ -48,7 +48,9 @@ def take_sample(daemon: lipofill.Daemon, life: int, age_s: float) -> Sample:
     open_files = len(os.listdir(process / "fd"))
     files = files_below(daemon.data)
     size = sum(_size(file) for file in files)
-    return Sample(life, age_s, int(status["VmRSS"].split()[0]) / 1024, int(status["Threads"]), open_files, len(files), size / 1e6)
+    return Sample(
+        life, age_s, int(status["VmRSS"].split()[0]) / 1024, int(status["Threads"]), open_files, len(files), size / 1e6
+    )
 
 
 class Sampler:
@@ -83,7 +85,8 @@ class Sampler:
 
 
 def slope_per_minute(samples: List[Sample], figure: str, warm_up_s: float) -> Tuple[float, int]:
-    """Growth of a figure while the daemon lives, by least squares with a level of its own for each life after its warm-up.
+    """Growth of a figure while the daemon lives, by least squares with a level of its own for each
+    life after its warm-up.
 
     Returns the slope a minute and from how many samples; 0 and 0 where no life was long enough.
     """

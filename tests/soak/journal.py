@@ -45,15 +45,25 @@ class Journal:
             self.complain(f"plan {plan} came to {len(self.hashes[plan])} different states")
 
     def check_ledger(
-        self, name: str, ended: simulation_pb2.Simulation, series: lipofill.Series, planned_ml: float, more_ml: float = 0.0
+        self,
+        name: str,
+        ended: simulation_pb2.Simulation,
+        series: lipofill.Series,
+        planned_ml: float,
+        more_ml: float = 0.0,
     ) -> None:
-        """Injected fat is film volume less what there was before, in every row and in the end; and all of it was injected.
+        """Injected fat is film volume less what there was before, in every row and in the end; and
+        all of it was injected.
 
-        What was added while it ran (`more_ml`) may come too late for the end time: then at least what was planned is there.
+        What was added while it ran (`more_ml`) may come too late for the end time: then at least
+        what was planned is there.
         """
         injected, film = series["injected_ml"], series["film_volume_ml"]
         initial = film[0] - injected[0]
-        errors = [ended.summary.film_volume_relative_error, np.abs(film - injected - initial).max() / max(injected.max(), initial)]
+        errors = [
+            ended.summary.film_volume_relative_error,
+            np.abs(film - injected - initial).max() / max(injected.max(), initial),
+        ]
         if ended.state in (simulation_pb2.Simulation.SETTLED, simulation_pb2.Simulation.FINISHED):
             injected_ml = ended.summary.injected_ml
             errors.append(max(planned_ml - injected_ml, injected_ml - planned_ml - more_ml, 0.0) / planned_ml)

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Runs a composed workload against the real daemon for a time, and checks what months would show: see deploy/soak --help."""
+"""Runs a composed workload against the real daemon for a time, and checks what months would show:
+see deploy/soak --help.
+"""
 
 from __future__ import annotations
 
@@ -75,7 +77,9 @@ class Soak:
     def _wait(self, started: float, clients: List[Client]) -> None:
         """For the time of the workload, or until every client has given up."""
         next_told_s = TELL_EVERY_S
-        while (age_s := time.monotonic() - started) < self.workload.duration_s and any(client.is_alive() for client in clients):
+        while (age_s := time.monotonic() - started) < self.workload.duration_s and any(
+            client.is_alive() for client in clients
+        ):
             time.sleep(0.1)
             if age_s > next_told_s:
                 next_told_s += TELL_EVERY_S
@@ -128,7 +132,9 @@ class Soak:
     def _check_nothing_is_left(self) -> None:
         """Everything was deleted: no patient, no simulation, and no file of one."""
         with self.daemon.connect() as connection:
-            left = [each.name for each in connection.patients.list()] + [each.name for each in connection.simulations.list()]
+            left = [each.name for each in connection.patients.list()] + [
+                each.name for each in connection.simulations.list()
+            ]
         for name in left:
             self.journal.complain(f"{name} is still there")
         orphans = [file for part in ("scans", "checkpoints") for file in files_below(self.daemon.data / part)]

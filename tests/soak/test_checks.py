@@ -35,7 +35,8 @@ def ended(rows, injected_ml):
     simulation = simulation_pb2.Simulation(state=simulation_pb2.Simulation.FINISHED)
     simulation.summary.steps, simulation.summary.injected_ml = len(rows), injected_ml
     return simulation, lipofill.Series(
-        simulation_pb2.SeriesRow(step=i + 1, injected_ml=injected, film_volume_ml=film) for i, (injected, film) in enumerate(rows)
+        simulation_pb2.SeriesRow(step=i + 1, injected_ml=injected, film_volume_ml=film)
+        for i, (injected, film) in enumerate(rows)
     )
 
 
@@ -98,8 +99,16 @@ def test_a_workload_that_is_wrong_is_named(tmp_path, given, complaint):
 def test_a_soak_fails_where_a_limit_is_exceeded(tmp_path):
     given = {"duration_s": 1, "runners": [{}], "viewers": [{}], "limits": {"peak_memory_mb": 1}}
     (tmp_path / "tight.json").write_text(json.dumps(given))
-    command = [sys.executable, str(FOLDER / "soak.py"), str(tmp_path / "tight.json"), "--json", str(tmp_path / "out.json")]
+    command = [
+        sys.executable,
+        str(FOLDER / "soak.py"),
+        str(tmp_path / "tight.json"),
+        "--json",
+        str(tmp_path / "out.json"),
+    ]
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode == 1, done.stderr
-    failed = [check["name"] for check in json.loads((tmp_path / "out.json").read_text())["checks"] if not check["holds"]]
+    failed = [
+        check["name"] for check in json.loads((tmp_path / "out.json").read_text())["checks"] if not check["holds"]
+    ]
     assert failed == ["peak memory [MB]"]

@@ -1,4 +1,6 @@
-"""Workload files: what is done to the daemon, for how long, and what it may cost. `deploy/soak --help` explains them."""
+"""Workload files: what is done to the daemon, for how long, and what it may cost.
+`deploy/soak --help` explains them.
+"""
 
 from __future__ import annotations
 
@@ -36,7 +38,9 @@ class Uploaders:
     """Clients that upload scans and delete them, keeping the last few."""
 
     count: int = 1
-    cells: List[int] = dataclasses.field(default_factory=lambda: [20, 120])  # a sheet of n x n x 2 triangles, from and to
+    cells: List[int] = dataclasses.field(
+        default_factory=lambda: [20, 120]
+    )  # a sheet of n x n x 2 triangles, from and to
     keep: int = 3
     pause_s: float = 0.5
 
@@ -76,7 +80,9 @@ class Workload:
     runners: List[Runners] = dataclasses.field(default_factory=list)
     uploaders: List[Uploaders] = dataclasses.field(default_factory=list)
     viewers: List[Viewers] = dataclasses.field(default_factory=list)
-    kill_every_s: List[float] = dataclasses.field(default_factory=list)  # SIGKILL and a new start; from and to; empty: never
+    kill_every_s: List[float] = dataclasses.field(
+        default_factory=list
+    )  # SIGKILL and a new start; from and to; empty: never
     restart_every_s: List[float] = dataclasses.field(default_factory=list)  # SIGTERM and a new start
     limits: Limits = dataclasses.field(default_factory=Limits)
     folder: pathlib.Path = pathlib.Path(".")
@@ -127,7 +133,9 @@ def _check(workload: Workload, source: str) -> None:
     for i, viewers in enumerate(workload.viewers):
         for name, choices in (("delivery", DELIVERIES), ("behaviour", BEHAVIOURS)):
             if getattr(viewers, name) not in choices:
-                raise WorkloadError(f"{source}.viewers[{i}].{name} is '{getattr(viewers, name)}', not one of {', '.join(choices)}")
+                raise WorkloadError(
+                    f"{source}.viewers[{i}].{name} is '{getattr(viewers, name)}', not one of {', '.join(choices)}"
+                )
     for i, uploaders in enumerate(workload.uploaders):
         if len(uploaders.cells) != 2 or not 2 <= uploaders.cells[0] <= uploaders.cells[1] <= 1000:
             raise WorkloadError(f"{source}.uploaders[{i}].cells is {uploaders.cells}, must be [from, to] in [2, 1000]")

@@ -4,9 +4,9 @@
 A class that grows past that is several classes (CONTRIBUTING.md). Exit code 1 and a line a breach.
 """
 
-import pathlib
 import re
-import sys
+
+from style import check
 
 MOST_METHODS = 25
 MOST_MEMBERS = 15
@@ -22,12 +22,14 @@ def body_after(text, opening):
     for at in range(opening, len(text)):
         depth += {"{": 1, "}": -1}.get(text[at], 0)
         if depth == 0:
-            return text[opening + 1:at]
-    return text[opening + 1:]
+            return text[opening + 1 : at]
+    return text[opening + 1 :]
 
 
 def statements(body):
-    """Declarations of a class body, each without what stands in its braces; access labels as they are."""
+    """Declarations of a class body, each without what stands in its braces; access labels as they
+    are.
+    """
     statement, depth = "", 0
     for character in body:
         if character == "{":
@@ -38,7 +40,9 @@ def statements(body):
                 statement += "{}"
         elif depth == 0:
             statement += character
-        ends = depth == 0 and (character == ";" or (character == "}" and re.search(r"\)[\w\s]*(:.*)?\{\}$", statement, re.S)))
+        ends = depth == 0 and (
+            character == ";" or (character == "}" and re.search(r"\)[\w\s]*(:.*)?\{\}$", statement, re.S))
+        )
         label = re.fullmatch(r"\s*(public|private|protected):", statement)
         if ends or label:
             yield " ".join(statement.split())
@@ -70,7 +74,7 @@ def classes(text):
                 members += statement.count("_,") + 1
             elif access == "private" and is_method(statement):
                 methods += 1
-        yield match.group(1), methods, members, text[:match.start()].count("\n") + 1
+        yield match.group(1), methods, members, text[: match.start()].count("\n") + 1
 
 
 def main():
@@ -89,4 +93,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    check(breaches, "every class is small enough, or no larger than it was")

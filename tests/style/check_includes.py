@@ -1,19 +1,26 @@
 #!/usr/bin/env python3
 """Checks that includes follow the layout: dependencies between folders point one way.
 
-    core/base <- geometry <- {solid, film, anatomy} <- coupling <- model <- plan <- mechanics <- step <- simulation <- export,
-    then server on core and proto, client on proto alone; core sees neither gRPC nor Protobuf.
-    In the server: store <- {sessions, security} <- wire <- backend <- entry <- {patients, simulations, frames}, which do
-    not see each other, <- the program: main.cc, and grpc_server, which registers the services. security <- ops <- backend.
-    wire turns messages into what core takes, and back; gRPC is for entry and above, of it wire knows the status alone.
-    Headers that only some may include are RESERVED.
+    tests/style/check_includes.py ROOT
 
-Exit code 1 and a line a breach when they do not.
+    core/base <- geometry <- {solid, film, anatomy} <- coupling <- model <- plan <- mechanics
+    <- step <- simulation <- export
+
+Then come server on core and proto, and client on proto alone; core sees neither gRPC nor Protobuf.
+
+    store <- {sessions, security} <- wire <- backend <- entry <- {patients, simulations, frames}
+    <- main.cc and grpc_server, which registers the services
+    security <- ops <- backend
+
+In the server the services do not see each other. wire turns messages into what core takes, and
+back; gRPC is for entry and above, of it wire knows the status alone. Headers that only some may
+include are RESERVED. It prints file:line for every include that goes another way.
 """
 
 import pathlib
 import re
-import sys
+
+from style import check
 
 BELOW_MODEL = {"core/base", "core/geometry", "core/anatomy", "core/solid", "core/film", "core/coupling"}
 RECORDS = {"server/store", "server/sessions", "server/security"}
@@ -40,7 +47,8 @@ ALLOWED = {
     "server/wire": RECORDS
     | {"core/base", "core/geometry", "core/anatomy", "core/model", "core/plan", "core/simulation"}
     | {"proto", "grpc", "server/wire"},
-    "server/backend": BELOW_BACKEND | {"core/base", "core/geometry", "core/model", "core/simulation"}
+    "server/backend": BELOW_BACKEND
+    | {"core/base", "core/geometry", "core/model", "core/simulation"}
     | {"proto", "server/backend"},
     "server/entry": BELOW_ENTRY | {"core/base"} | {"proto", "grpc", "server/entry"},
     "server/patients": BELOW_SERVICES | {"core/base", "core/geometry", "core/model"} | {"proto", "grpc", "server/patients"},
@@ -52,8 +60,14 @@ ALLOWED = {
 
 # Headers that only these may include, tests too: paths, or folders with all below them.
 RESERVED = {
-    # Everyone else knows the store by its interface, store.h. The chaos test opens what a killed daemon left.
-    "server/store/sqlite_store.h": {"server/store", "server/main.cc", "tests/unit/server/store", "tests/integration/chaos"},
+    # Everyone else knows the store by its interface, store.h. The chaos test opens what a killed
+    # daemon left.
+    "server/store/sqlite_store.h": {
+        "server/store",
+        "server/main.cc",
+        "tests/unit/server/store",
+        "tests/integration/chaos",
+    },
 }
 
 
@@ -105,12 +119,5 @@ def breaches(root):
                 yield f"{path}:{number}: {included} is not for it, see RESERVED"
 
 
-def main():
-    root = pathlib.Path(sys.argv[1]).resolve()
-    found = list(breaches(root))
-    print("\n".join(found) or "every include follows the layout")
-    return 1 if found else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    check(breaches, "every include follows the layout")

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that no module of the Python package needs itself: imports, also those for types alone, form no circle.
+"""Checks that no module of the Python package needs itself: imports, also those for types alone,
+form no circle.
 
 Generated modules (lipofill.v1 and the like) import nothing of the package and are left out.
 
@@ -21,12 +22,15 @@ def modules_below(root):
 
 
 def imports_of(path, known):
-    """Modules of the package that a file imports, wherever in it: at the top, for types, in a function."""
+    """Modules of the package that a file imports, wherever in it: at the top, for types, in a
+    function.
+    """
     for node in ast.walk(ast.parse(path.read_text(), str(path))):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
-            # "from lipofill import runs" names a module, "from lipofill.runs import Run" a thing in one.
+            # "from lipofill import runs" names a module, "from lipofill.runs import Run" a thing in
+            # one.
             names = [f"{node.module}.{alias.name}" for alias in node.names] + [node.module or ""]
         else:
             continue
@@ -34,7 +38,7 @@ def imports_of(path, known):
 
 
 def find_circle(graph):
-    """The modules of one circle, the first again at its end; empty when there is none. Depth first."""
+    """Finds one circle, depth first: its modules, the first again at its end; empty without one."""
     done = set()
 
     def visit(module, above):

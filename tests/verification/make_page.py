@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Makes core/doc/verification.md and its plots from the files that the verification tests record (tests/verification/record.h).
+"""Makes core/doc/verification.md and its plots from the files that the verification tests record
+(tests/verification/record.h).
 
     make_page.py RECORDS_DIR PAGE IMAGES_DIR     writes the page and the plots
-    make_page.py --check PAGE TESTS_DIR          exit code 1 where the page and the tests in the tree name different tests
+    make_page.py --check PAGE TESTS_DIR          exit code 1 where the page names other tests than the tree has
 
 The same records give the same bytes.
 """
@@ -37,12 +38,23 @@ def natural(text):
 
 
 def read_cases(folder):
-    """Case id -> the case with the figures, series and curves of all its tests, in the order of the tests' names."""
+    """Case id -> the case with the figures, series and curves of all its tests, in the order of the
+    tests' names.
+    """
     cases = {}
     for path in sorted(folder.glob("*.json"), key=lambda p: natural(p.name)):
         record = json.loads(path.read_text())
-        case = cases.setdefault(record["id"], {"title": record["title"], "reference": record["reference"], "tests": [],
-                                               "figures": [], "series": [], "curves": []})
+        case = cases.setdefault(
+            record["id"],
+            {
+                "title": record["title"],
+                "reference": record["reference"],
+                "tests": [],
+                "figures": [],
+                "series": [],
+                "curves": [],
+            },
+        )
         if case["title"] != record["title"]:
             sys.exit(f"make_page: {path.name}: the title of {record['id']} differs from that of another test")
         if record["reference"] not in case["reference"]:
@@ -108,10 +120,16 @@ def figure_row(figure):
 
 
 def series_row(series):
-    steps = ", ".join(f"{100.0 * error:.2g} % ({resolution:g})"
-                      for resolution, error in zip(series["resolutions"], series["errors"]))
-    return (f"error of {series['quantity']} against {series['resolution_name']}", f"order {series['expected_order']:g}",
-            f"order {series['observed_order']:.2f}: {steps}", "", f"at least {series['least_order']:.2g}")
+    steps = ", ".join(
+        f"{100.0 * error:.2g} % ({resolution:g})" for resolution, error in zip(series["resolutions"], series["errors"])
+    )
+    return (
+        f"error of {series['quantity']} against {series['resolution_name']}",
+        f"order {series['expected_order']:g}",
+        f"order {series['observed_order']:.2f}: {steps}",
+        "",
+        f"at least {series['least_order']:.2g}",
+    )
 
 
 def table(rows):
@@ -162,7 +180,9 @@ def anchor(case_id):
 
 
 def plot(case_id, case, folder):
-    """Draws the case's series and curves side by side; returns the file's name, or None where there is nothing to draw."""
+    """Draws the case's series and curves side by side; returns the file's name, or None where there
+    is nothing to draw.
+    """
     panels = [(draw_series, group) for group in series_groups(case).values()]
     panels += [(draw_curve, curve) for curve in case["curves"]]
     if not panels:
@@ -170,14 +190,22 @@ def plot(case_id, case, folder):
     import matplotlib
 
     matplotlib.use("svg")
-    matplotlib.rcParams.update({"svg.hashsalt": "lipofill", "svg.fonttype": "none", "font.size": 9, "axes.grid": True,
-                                "grid.alpha": 0.3, "legend.frameon": False})
+    matplotlib.rcParams.update(
+        {
+            "svg.hashsalt": "lipofill",
+            "svg.fonttype": "none",
+            "font.size": 9,
+            "axes.grid": True,
+            "grid.alpha": 0.3,
+            "legend.frameon": False,
+        }
+    )
     import matplotlib.pyplot as plt
 
     columns = min(len(panels), 3)
     rows = math.ceil(len(panels) / columns)
     figure, axes = plt.subplots(rows, columns, figsize=(3.6 * columns, 2.9 * rows), squeeze=False, layout="constrained")
-    for axis in axes.flat[len(panels):]:
+    for axis in axes.flat[len(panels) :]:
         axis.remove()
     for axis, (draw, what) in zip(axes.flat, panels):
         draw(axis, what)
@@ -188,15 +216,26 @@ def plot(case_id, case, folder):
 
 
 def draw_series(axis, group):
-    """Errors of all series of a group, and the slope expected through the last point of the first."""
+    """Draws the errors of a group's series, and the expected slope through the last point."""
     for series in group:
-        axis.loglog(series["resolutions"], [abs(error) for error in series["errors"]], "o-", markersize=4, linewidth=1.0,
-                    label=series["quantity"])
+        axis.loglog(
+            series["resolutions"],
+            [abs(error) for error in series["errors"]],
+            "o-",
+            markersize=4,
+            linewidth=1.0,
+            label=series["quantity"],
+        )
     x = group[0]["resolutions"]
     power = group[0]["expected_order"] * (-1.0 if x[-1] > x[0] else 1.0)
     last = abs(group[0]["errors"][-1])
-    axis.loglog(x, [last * (value / x[-1]) ** power for value in x], "k--", linewidth=0.8,
-                label=f"order {group[0]['expected_order']:g}")
+    axis.loglog(
+        x,
+        [last * (value / x[-1]) ** power for value in x],
+        "k--",
+        linewidth=0.8,
+        label=f"order {group[0]['expected_order']:g}",
+    )
     axis.set_xticks(x, [f"{value:.3g}" for value in x])
     axis.minorticks_off()
     axis.set_xlabel(group[0]["resolution_name"])
@@ -258,13 +297,17 @@ def tests_in(folder):
     found = set()
     for source in sorted(folder.glob("*/*_test.cc")):
         text = source.read_text()
-        found |= {f"{suite}.{name}" for suite, name in re.findall(r"^TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)", text, re.MULTILINE)}
+        found |= {
+            f"{suite}.{name}"
+            for suite, name in re.findall(r"^TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)", text, re.MULTILINE)
+        }
     return found
 
 
 def check(page, folder):
-    """Names that stand on the page and in no source: the page is stale. The other way round is said, and no error: a test
-    that needs what this machine lacks records nothing."""
+    """Names that stand on the page and in no source: the page is stale. The other way round is
+    said, and no error: a test that needs what this machine lacks records nothing.
+    """
     named = set(re.findall(r"^- `([\w.]+)`$", page.read_text().split(NAMES_HEADING)[-1], re.MULTILINE))
     present = tests_in(folder)
     for name in sorted(present - named):

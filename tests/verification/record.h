@@ -16,7 +16,7 @@ enum class Bound {
 
 struct Figure {
   std::string quantity;  ///< for example "front after 10 s"
-  std::string unit;      ///< of both values; "1" for ratios
+  std::string unit;      ///< both values have it; "1" for ratios
   double expected = 0.0;
   double measured = 0.0;
   double tolerance = 0.0;
@@ -36,7 +36,7 @@ struct Series {
 /// Points measured beside a reference, for a plot on the page.
 struct Curve {
   std::string name;
-  std::string x_label;  ///< with its unit
+  std::string x_label;  ///< names the axis and its unit
   std::string y_label;
   std::vector<double> x;
   std::vector<double> measured;
@@ -48,20 +48,22 @@ struct Curve {
 
 /// One case of the verification suite: a problem whose answer is known without the solver.
 struct CaseInfo {
-  /// "section/number-name" in lower case: film/3-barenblatt. The section and the number place it on the page; sections
-  /// are film, coupled, solid, fat, anatomy, conservation. Tests may share a case.
+  /// "section/number-name" in lower case: film/3-barenblatt. The section and the number place it on
+  /// the page; sections are film, coupled, solid, fat, anatomy, conservation. Tests may share a
+  /// case.
   std::string id;
   std::string title;
   std::string reference;  ///< where the expected values come from, in a sentence
 };
 
-/// A number in a name: with_number("front after %g s", 10.0). `pattern` is of printf, for one double.
+/// A number in a name: with_number("front after %g s", 10.0). `pattern` is of printf, for one
+/// double.
 std::string with_number(const char* pattern, double value);
 
-/// Collects what a test measures. Every call prints measured against expected, asserts what its bound says (as EXPECT_
-/// does: the test goes on and fails) and, where the environment names a folder in LIPOFILL_VERIFICATION_DIR, rewrites
-/// the test's file of that case there, atomically: tests may run in parallel. `deploy/verify` makes
-/// core/doc/verification.md from these files.
+/// Collects what a test measures. Every call prints measured against expected, asserts what its
+/// bound says (as EXPECT_ does: the test goes on and fails) and, where the environment names a
+/// folder in LIPOFILL_VERIFICATION_DIR, rewrites the test's file of that case there, atomically:
+/// tests may run in parallel. `deploy/verify` makes core/doc/verification.md from these files.
 /// Checked by tests/verification/record_test.cc.
 class Case {
  public:
@@ -70,8 +72,8 @@ class Case {
   /// Asserts a figure.
   void record(const Figure& figure);
 
-  /// Asserts that the observed order is at least series.least_order, and returns it: log(e1/e2) / |log(n1/n2)| of the
-  /// last two.
+  /// Asserts that the observed order is at least series.least_order, and returns it:
+  /// log(e1/e2) / |log(n1/n2)| of the last two.
   double record_series(const Series& series);
 
   /// Asserts nothing.

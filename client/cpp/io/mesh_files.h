@@ -20,18 +20,21 @@ struct MeshView {
   std::vector<const Array*> fields;
 };
 
-/// The meshes among the arrays, in their order, each with its fields. DATA_LOSS for arrays that do not fit together:
-/// points or cells missing, an index outside the points, a field of another length.
+/// The meshes among the arrays, in their order, each with its fields. DATA_LOSS for arrays that do
+/// not fit together: points or cells missing, an index outside the points, a field of another
+/// length.
 absl::StatusOr<std::vector<MeshView>> mesh_views(std::span<const Array> meshes, std::span<const Array> fields);
 
-/// The extension of the file a mesh is written to: ".vtu" for hexahedra, ".vtp" for triangles and quadrilaterals.
+/// The extension of the file a mesh is written to: ".vtu" for hexahedra, ".vtp" for triangles and
+/// quadrilaterals.
 const char* mesh_extension(const MeshView& mesh);
 
-/// The name of a field in a file, its unit included: "displacement_mm", "pressure_pa", "velocity_mm_per_s", "wet".
+/// The name of a field in a file, its unit included: "displacement_mm", "pressure_pa",
+/// "velocity_mm_per_s", "wet".
 std::string field_name(const Array& field);
 
-/// Writes a mesh for ParaView (XML, appended binary, zlib): the points at rest plus the field "displacement", and all
-/// fields by `field_name`. Checked by tests/unit/client/mesh_files_test.cc.
+/// Writes a mesh for ParaView (XML, appended binary, zlib): the points at rest plus the field
+/// "displacement", and all fields by `field_name`. Checked by tests/unit/client/mesh_files_test.cc.
 absl::Status write_mesh(const std::filesystem::path& file, const MeshView& mesh);
 
 /// Writes a ParaView collection: files, named relative to it, at their times.

@@ -8,8 +8,8 @@ class vtkOutputWindow;
 
 namespace lipofill::client {
 
-/// Collects what VTK would print, from here to the end of the scope: its readers and writers tell of errors in no other
-/// way.
+/// Collects what VTK would print, from here to the end of the scope: its readers and writers tell
+/// of errors in no other way.
 class VtkMessages {
  public:
   VtkMessages();

@@ -14,8 +14,8 @@ inline constexpr Colour kInk = {0.12, 0.12, 0.14};
 /// Colour of a surface where there is nothing to show.
 inline constexpr Colour kNothing = {0.93, 0.91, 0.89};
 
-/// A range of settled pressure and what it is called. The bounds are assumed: the first is the critical interstitial
-/// pressure.
+/// A range of settled pressure and what it is called. The bounds are assumed: the first is the
+/// critical interstitial pressure.
 struct PressureBand {
   double below_mmhg;  ///< infinite for the last
   const char* label;

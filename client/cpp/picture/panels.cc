@@ -47,7 +47,8 @@ void set_camera(const View& view, vtkRenderer* renderer) {
   renderer->ResetCameraClippingRange();
 }
 
-/// A lamp from above and beside the camera, and a weak one at the camera: hollows and bulges show by their shading.
+/// A lamp from above and beside the camera, and a weak one at the camera: hollows and bulges show
+/// by their shading.
 void set_lights(vtkRenderer* renderer) {
   renderer->AutomaticLightCreationOff();
   for (const auto& [x, y, z, intensity] : {std::array{-0.9, 0.8, 1.0, 0.75}, std::array{0.3, 0.0, 1.0, 0.42}}) {

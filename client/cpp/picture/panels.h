@@ -26,9 +26,9 @@ struct Area {
 /// The way a surface is painted.
 struct Paint {
   enum class Kind { kPlain, kPointField, kCellColours };
-  Kind kind = Kind::kPlain;                     ///< in the colour of skin
-  const char* field = nullptr;                  ///< of kPointField
-  vtkColorTransferFunction* colours = nullptr;  ///< of kPointField
+  Kind kind = Kind::kPlain;                     ///< kPlain has the colour of skin
+  const char* field = nullptr;                  ///< kPointField shows it
+  vtkColorTransferFunction* colours = nullptr;  ///< kPointField shows it
 };
 
 /// A view of a surface in a part of the sheet. Precondition: the surface has point normals.

@@ -17,7 +17,7 @@
 namespace lipofill::client {
 namespace {
 
-constexpr int kCuts = 6;  // along each side of a triangle
+constexpr int kCuts = 6;  // each side of a triangle is cut so often
 
 /// A point of the surface with what is interpolated between points.
 struct Corner {

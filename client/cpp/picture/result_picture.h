@@ -24,8 +24,8 @@ struct PictureRequest {
   std::string caption;
   /// Figures beside the panels: what, and how much; a heading where there is no second.
   std::vector<std::pair<std::string, std::string>> figures;
-  /// Sentences under the panels: what to know before relying on the figures. The first six are shown, the others
-  /// counted.
+  /// Sentences under the panels: what to know before relying on the figures. The first six are
+  /// shown, the others counted.
   std::vector<std::string> remarks;
 };
 

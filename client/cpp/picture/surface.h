@@ -18,8 +18,8 @@ inline constexpr char kDisplacementLength[] = "displacement_length_mm";
 inline constexpr char kPressure[] = "pressure_pa";
 inline constexpr char kThickness[] = "thickness_mm";
 
-/// Reads a .vtp. INVALID_ARGUMENT, naming the file, for one that cannot be read, has no points, or lacks the point
-/// field "displacement_mm" of three components or one of `fields`.
+/// Reads a .vtp. INVALID_ARGUMENT, naming the file, for one that cannot be read, has no points, or
+/// lacks the point field "displacement_mm" of three components or one of `fields`.
 absl::StatusOr<Surface> read_surface(const std::filesystem::path& file, const std::vector<std::string>& fields);
 
 /// Adds normals for smooth shading; points and their order stay.

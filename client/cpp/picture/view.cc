@@ -14,10 +14,10 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-// A face is recognised by what is around the place: how many radii of the region the picture shows, and at least how
-// much.
+// A face is recognised by what is around the place: how many radii of the region the picture shows,
+// and at least how much.
 constexpr double kSurroundings = 2.0;
-constexpr double kPlateHalfHeight = 0.76;  // of the same: a plate is shown whole
+constexpr double kPlateHalfHeight = 0.76;  // takes its place for a plate, which is shown whole
 constexpr double kLeastHalfHeight = 92.0;  // [mm]: a cheek with nose and ear
 
 std::vector<double> weights_of(vtkPolyData* surface, const char* name) {

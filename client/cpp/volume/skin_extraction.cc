@@ -36,8 +36,8 @@ Surface output_of(Filter* filter, vtkPolyData* input) {
   return filter->GetOutput();
 }
 
-/// The value in the voxels' own numbers. Between whole numbers where the voxels are whole: a corner on a voxel would be
-/// the corner of triangles without area, which nothing after this can mend.
+/// The value in the voxels' own numbers. Between whole numbers where the voxels are whole: a corner
+/// on a voxel would be the corner of triangles without area, which nothing after this can mend.
 double voxel_value(const Volume& volume, double isovalue) {
   const double value = (isovalue - volume.intercept) / volume.slope;
   const int type = volume.voxels->GetScalarType();

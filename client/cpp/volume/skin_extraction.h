@@ -25,14 +25,16 @@ struct ExtractedSkin {
   std::string frame;  ///< "LPS" (x left, y back, z up) or "the file's own"
 };
 
-/// The surface where a volume takes a value, as triangles in millimetres whose normals point to the lower values (out
-/// of a head in air), in the patient's LPS axes where the volume says what they are. The largest connected piece of a
-/// CT head at -300 HU is the skin together with the walls of the airways and sinuses that open to the outside; the
-/// model builder keeps only what is seen from outside.
+/// The surface where a volume takes a value, as triangles in millimetres whose normals point to the
+/// lower values (out of a head in air), in the patient's LPS axes where the volume says what they
+/// are. The largest connected piece of a CT head at -300 HU is the skin together with the walls of
+/// the airways and sinuses that open to the outside; the model builder keeps only what is seen from
+/// outside.
 /// @param volume  .mha, .mhd, .nrrd, .nhdr, .nii or .nii.gz
 /// @param out     .obj, .ply or .stl
-/// INVALID_ARGUMENT for a volume that cannot be read or has no such surface. Needs memory for the volume and its
-/// surface. Checked by tests/unit/client/volume_test.cc: a sphere in each format, oblique axes, truncated files.
+/// INVALID_ARGUMENT for a volume that cannot be read or has no such surface. Needs memory for the
+/// volume and its surface. Checked by tests/unit/client/volume_test.cc: a sphere in each format,
+/// oblique axes, truncated files.
 absl::StatusOr<ExtractedSkin> extract_skin(const std::filesystem::path& volume, const std::filesystem::path& out,
                                            const SkinExtraction& options);
 

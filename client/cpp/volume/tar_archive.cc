@@ -76,7 +76,8 @@ absl::Status TarArchive::read(char* data, size_t size) {
   return absl::OkStatus();
 }
 
-/// Says in our words what libarchive found wrong with the file, where we know; its own words follow.
+/// Says in our words what libarchive found wrong with the file, where we know; its own words
+/// follow.
 absl::Status TarArchive::explain(const char* otherwise) const {
   const char* const text = archive_error_string(stream_.get());
   const std::string_view found = text != nullptr ? text : "";

@@ -19,7 +19,7 @@ struct VolumeHeader {
   VolumeFormat format = VolumeFormat::kMetaImage;
   std::array<uint64_t, 3> size{};
   uint64_t bytes_per_voxel = 0;
-  int vtk_type = 0;         ///< of a voxel, VTK_SHORT and so on; not of NIfTI
+  int vtk_type = 0;         ///< a voxel is VTK_SHORT and so on; NIfTI does not say
   bool big_endian = false;  ///< the same
   bool compressed = false;
   std::filesystem::path data_file;  ///< may be the header's own file
@@ -34,10 +34,11 @@ struct VolumeHeader {
 
 inline constexpr uint64_t kMaxVolumeBytes = uint64_t{2} << 30;
 
-/// Reads the header of a MetaImage (.mha, .mhd), NRRD (.nrrd, .nhdr) or NIfTI-1 (.nii, .nii.gz) volume.
-/// INVALID_ARGUMENT, naming the file and what is wrong, for another format, a volume that is not one scalar at each
-/// point of a 3-d grid, more than kMaxVolumeBytes of voxels, or a file that holds fewer bytes than its header says
-/// (compressed ones are unpacked to be counted, in constant memory). Checked by tests/unit/client/volume_test.cc.
+/// Reads the header of a MetaImage (.mha, .mhd), NRRD (.nrrd, .nhdr) or NIfTI-1 (.nii, .nii.gz)
+/// volume. INVALID_ARGUMENT, naming the file and what is wrong, for another format, a volume that
+/// is not one scalar at each point of a 3-d grid, more than kMaxVolumeBytes of voxels, or a file
+/// that holds fewer bytes than its header says (compressed ones are unpacked to be counted, in
+/// constant memory). Checked by tests/unit/client/volume_test.cc.
 absl::StatusOr<VolumeHeader> read_volume_header(const std::filesystem::path& file);
 
 // One format each; sizes against the file are checked by read_volume_header.

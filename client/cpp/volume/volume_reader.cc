@@ -74,8 +74,8 @@ absl::Status take_nifti_voxels(const std::filesystem::path& file, vtkNIFTIImageR
   return absl::OkStatus();
 }
 
-/// NIfTI maps voxel centres to RAS millimetres by its sform, else its qform, else by the spacing alone. The reader has
-/// put the slices into the order its matrices speak of.
+/// NIfTI maps voxel centres to RAS millimetres by its sform, else its qform, else by the spacing
+/// alone. The reader has put the slices into the order its matrices speak of.
 void take_nifti_geometry(vtkNIFTIImageReader* reader, Volume* volume) {
   const vtkNIFTIImageHeader* header = reader->GetNIFTIHeader();
   vtkMatrix4x4* matrix = const_cast<vtkNIFTIImageHeader*>(header)->GetSFormCode() > 0 ? reader->GetSFormMatrix()

@@ -10,8 +10,8 @@
 
 namespace lipofill::client {
 
-/// Voxels on the grid of their indices (origin 0, spacing 1), and how to get from there to millimetres and to the
-/// values meant.
+/// Voxels on the grid of their indices (origin 0, spacing 1), and how to get from there to
+/// millimetres and to the values meant.
 struct Volume {
   vtkSmartPointer<vtkImageData> voxels;
   Affine index_to_mm{};

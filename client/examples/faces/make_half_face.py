@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
-"""Makes half_face.obj and half_face.landmarks.json: the left half of a face that nobody has; or, for tests, a whole one of other shape.
+"""Makes half_face.obj and half_face.landmarks.json: the left half of a face that nobody has; or,
+for tests, a whole one of other shape.
 
-The head is sculpted from ellipsoids and tapered rods, given as signed distances [mm] and blended with smooth minima; a grid of rays
-from a point inside the head samples its outermost surface. Sizes are those of an average adult. Axes: +x the subject's left, +y up,
-+z forward; the midline is x = 0. Standard library only; the same files come out byte for byte on every run.
+The head is sculpted from ellipsoids and tapered rods, given as signed distances [mm] and blended
+with smooth minima; a grid of rays from a point inside the head samples its outermost surface. Sizes
+are those of an average adult. Axes: +x the subject's left, +y up, +z forward; the midline is x = 0.
+Standard library only; the same files come out byte for byte on every run.
 
     make_half_face.py [--out FOLDER]
     make_half_face.py --whole --name long_face --stretch 0.95 1.12 1.0 --step 2 --out FOLDER
@@ -52,7 +54,8 @@ def rod(a, b, radius_a, radius_b, blend):
     return distance, blend
 
 
-# What is joined, in order, each with the length [mm] over which it blends into what is there already.
+# What is joined, in order, each with the length [mm] over which it blends into what is there
+# already.
 JOINED = [
     # Skull, mid-face, neck.
     ellipsoid((0, 112, 12), (75, 84, 96), 1),
@@ -67,7 +70,8 @@ JOINED = [
     # Upper jaw and teeth under the lips.
     ellipsoid((0, 36, 92), (26, 18, 20), 18),
     ellipsoid((0, 20, 87), (35, 26, 25.5), 18),
-    # Soft tissue: behind the jaw under the ear, cheek before and beside the mouth, masseter, under the eye.
+    # Soft tissue: behind the jaw under the ear, cheek before and beside the mouth, masseter, under
+    # the eye.
     ellipsoid((43, 36, 10), (20, 52, 26), 30),
     ellipsoid((33, 38, 74), (25, 32, 25), 24),
     ellipsoid((26, 13, 74), (19, 22, 22), 24),
@@ -115,7 +119,8 @@ DETAILS = [
 ]
 
 SUNK_LAST = [
-    # Line of the mouth, its corner, nostril, groove under the nose, slit and fold of the lids, fold from nose to mouth.
+    # Line of the mouth, its corner, nostril, groove under the nose, slit and fold of the lids, fold
+    # from nose to mouth.
     rod((0, 20.4, 118.6), (11, 20.0, 115.0), 1.6, 1.4, 3),
     rod((11, 20.0, 115.0), (23, 20.2, 105.0), 1.4, 1.5, 3),
     rod((0, 40, 118.8), (0, 31, 119.8), 1.6, 1.8, 4),
@@ -136,7 +141,9 @@ def smooth_minimum(a, b, k):
 
 
 def distance_to_head(x, y, z):
-    """Signed distance to the skin, negative inside. |x| is rounded off at the midline so that the two sides meet smoothly."""
+    """Signed distance to the skin, negative inside. |x| is rounded off at the midline so that the
+    two sides meet smoothly.
+    """
     x = math.sqrt(x * x + 4.0) - 2.0
     head = 1e9
     for distance, blend in JOINED:
@@ -163,7 +170,9 @@ def along(ray, t):
 
 
 def find_skin(ray):
-    """Where a ray from the centre leaves the head for good: steps in from far away, then closes in by false position (Illinois)."""
+    """Where a ray from the centre leaves the head for good: steps in from far away, then closes in
+    by false position (Illinois).
+    """
     outside = FARTHEST
     above = distance_to_head(*along(ray, outside))
     while above > 0.05:
@@ -186,12 +195,16 @@ def find_skin(ray):
 
 
 def sample_head():
-    """Rows of points, from below to above, each from the right of the midline round to behind the left ear."""
+    """Rows of points, from below to above, each from the right of the midline round to behind the
+    left ear.
+    """
     return [[find_skin(direction(a, e)) for a in AZIMUTHS] for e in ELEVATIONS]
 
 
 def sample_whole_head(step):
-    """The same rows of a head with both sides, `step` times as coarse: the left one, and its mirror image."""
+    """The same rows of a head with both sides, `step` times as coarse: the left one, and its mirror
+    image.
+    """
     azimuths = [math.radians(1.5 * step * i) for i in range(int(123.0 / (1.5 * step)) + 1)]
     rows = []
     for elevation in ELEVATIONS[::step]:
@@ -215,7 +228,9 @@ def nearest(points, target):
 
 
 def behind_chord(profile, top, bottom):
-    """The point of the profile between two of its points that lies farthest behind the line between them."""
+    """The point of the profile between two of its points that lies farthest behind the line between
+    them.
+    """
     (y0, z0), (y1, z1) = top[1:], bottom[1:]
     between = [p for p in profile if y1 < p[1] < y0]
     return max(between, key=lambda p: (z0 + (z1 - z0) * (p[1] - y0) / (y1 - y0)) - p[2])
@@ -226,7 +241,10 @@ def find_landmarks(rows, middle, both_sides=False):
     places = {p: (j, i) for j, row in enumerate(rows) for i, p in enumerate(row)}
     points = list(places)
     profile = [row[middle] for row in rows]
-    most_forward = lambda low, high: max((p for p in profile if low < p[1] < high), key=lambda p: p[2])
+
+    def most_forward(low, high):
+        return max((p for p in profile if low < p[1] < high), key=lambda p: p[2])
+
     pronasale = most_forward(45, 70)
     upper_lip = most_forward(21, 32)
     found = {
@@ -280,8 +298,9 @@ def write_landmarks(path, landmarks):
         },
         "landmarks": {name: list(p) for name, p in landmarks.items()},
         "method": {
-            "midline": "from the profile in the plane x = 0: pronasale, pogonion = most forward; nasion, subnasale = deepest "
-            "behind the chords forehead-pronasale and pronasale-upper lip; menton = farthest along 0.5 forward - 1 up",
+            "midline": "from the profile in the plane x = 0: pronasale, pogonion = most forward; nasion, subnasale = "
+            "deepest behind the chords forehead-pronasale and pronasale-upper lip; "
+            "menton = farthest along 0.5 forward - 1 up",
             "others": "vertex nearest to where the sculpture has the feature",
         },
         "source": "make_half_face.py",

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """A simulation's result as VTK data: measured, and written for ParaView or 3D Slicer.
 
-The arrays of a frame become VTK arrays without a copy of their values. Prints the area and the largest displacement of the skin.
+The arrays of a frame become VTK arrays without a copy of their values. Prints the area and the
+largest displacement of the skin.
 
     open_in_vtk.py simulations/abc --out skin.vtp [--mesh skin] [--server HOST:PORT]
 """
@@ -20,13 +21,16 @@ def cells_of(connectivity):
     cells = vtk.vtkCellArray()
     offsets = np.arange(0, connectivity.size + 1, connectivity.shape[1], dtype=np.int64)
     cells.SetData(
-        numpy_support.numpy_to_vtk(offsets, deep=True), numpy_support.numpy_to_vtk(connectivity.ravel().astype(np.int64), deep=True)
+        numpy_support.numpy_to_vtk(offsets, deep=True),
+        numpy_support.numpy_to_vtk(connectivity.ravel().astype(np.int64), deep=True),
     )
     return cells
 
 
 def surface_of(frame, mesh):
-    """The surface `mesh` as it is in the frame, with all of its fields; `frame` must live as long as it."""
+    """The surface `mesh` as it is in the frame, with all of its fields; `frame` must live as long
+    as it.
+    """
     points = vtk.vtkPoints()
     points.SetData(numpy_support.numpy_to_vtk(frame.moved_points(mesh), deep=True))
     surface = vtk.vtkPolyData()

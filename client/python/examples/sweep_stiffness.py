@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """How the lift of the skin and the pressure of the fat depend on the stiffness of the skin.
 
-The modulus of skin is known within a factor of five (90 to 500 kPa): a plan deserves to be looked at over that range. Writes a
-picture and a CSV.
+The modulus of skin is known within a factor of five (90 to 500 kPa): a plan deserves to be looked
+at over that range. Writes a picture and a CSV.
 
-    sweep_stiffness.py PLAN.json --out sweep [--moduli-kpa 90 150 250 500] [--server HOST:PORT | --spawn]
+    sweep_stiffness.py PLAN.json --out sweep [--moduli-kpa 90 150 250 500]
+        [--server HOST:PORT | --spawn]
 """
 
 import argparse
@@ -66,7 +67,9 @@ def plot(rows, layer, title, png):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("plan")
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("sweep"), help="folder for sweep.png and sweep.csv")
+    parser.add_argument(
+        "--out", type=pathlib.Path, default=pathlib.Path("sweep"), help="folder for sweep.png and sweep.csv"
+    )
     parser.add_argument("--moduli-kpa", type=float, nargs="+", default=[90, 120, 180, 260, 370, 500])
     parser.add_argument("--server", help="default: LIPOFILL_SERVER, else 127.0.0.1:50061")
     parser.add_argument("--spawn", action="store_true", help="a private daemon, for this run only")

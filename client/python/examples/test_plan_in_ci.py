@@ -1,4 +1,5 @@
-"""A plan under continuous integration: what a clinic relies on is asserted, and a change that breaks it fails the build.
+"""A plan under continuous integration: what a clinic relies on is asserted, and a change that
+breaks it fails the build.
 
     PLAN=jaw_angle.json python3 -m pytest test_plan_in_ci.py
 

@@ -1,16 +1,17 @@
-"""Client of lipofilld, which simulates facial fat grafting. Research and planning aid, not a medical device.
+"""Client of lipofilld, which simulates facial fat grafting. Research and planning aid, not a
+medical device.
 
     import lipofill
 
     plan = lipofill.Plan.load("jaw_angle.json")
-    with lipofill.Connection() as connection, connection.run(plan, progress=lipofill.print_progress) as run:
+    with lipofill.Connection() as connection, connection.run(plan) as run:
         with run.watch(meshes=["skin"], fields=["skin.displacement"]) as frames:
             for frame in frames:
                 print(frame.time_s, frame["skin.displacement"].max())
         print(run.wait().summary)
 
-Lengths are in mm, volumes in mL, pressures in Pa, times in s; names say so. Messages are those of lipofill.v1; their reference is
-core/doc/api.md. Errors are LipofillError and its subclasses.
+Lengths are in mm, volumes in mL, pressures in Pa, times in s; names say so. Messages are those of
+lipofill.v1; their reference is core/doc/api.md. Errors are LipofillError and its subclasses.
 """
 
 from lipofill.arrays import Array
@@ -46,9 +47,40 @@ from lipofill.watching import Watch
 
 __version__ = "0.1.0"
 __all__ = [
-    "AbortedError", "AlreadyExistsError", "Array", "CancelledError", "Connection", "Credentials", "Daemon", "DataLossError",
-    "DeadlineExceededError", "FailedPreconditionError", "FieldViolation", "Frame", "InvalidArgumentError", "LipofillError",
-    "Meshes", "NotFoundError", "PermissionDeniedError", "Plan", "Progress", "ResourceExhaustedError", "RetryPolicy", "Run", "Series",
-    "Simulation", "SimulationFailedError", "UnauthenticatedError", "UnavailableError", "Watch", "at_chart", "at_position", "box",
-    "by_landmarks", "constant", "disc", "print_progress", "samples",
-]  # fmt: skip
+    "AbortedError",
+    "AlreadyExistsError",
+    "Array",
+    "CancelledError",
+    "Connection",
+    "Credentials",
+    "Daemon",
+    "DataLossError",
+    "DeadlineExceededError",
+    "FailedPreconditionError",
+    "FieldViolation",
+    "Frame",
+    "InvalidArgumentError",
+    "LipofillError",
+    "Meshes",
+    "NotFoundError",
+    "PermissionDeniedError",
+    "Plan",
+    "Progress",
+    "ResourceExhaustedError",
+    "RetryPolicy",
+    "Run",
+    "Series",
+    "Simulation",
+    "SimulationFailedError",
+    "UnauthenticatedError",
+    "UnavailableError",
+    "Watch",
+    "at_chart",
+    "at_position",
+    "box",
+    "by_landmarks",
+    "constant",
+    "disc",
+    "print_progress",
+    "samples",
+]

@@ -28,12 +28,14 @@ class Array:
     unit : str
         ``"mm"``, ``"Pa"``, ``"mm/s"`` or empty.
     location : str
-        ``"point"`` or ``"cell"`` for fields, ``"mesh"`` for the mesh itself: ``points`` (n, 3) and ``cells`` (n, 3, 4 or 8).
+        ``"point"`` or ``"cell"`` for fields, ``"mesh"`` for the mesh itself: ``points`` (n, 3) and
+        ``cells`` (n, 3, 4 or 8).
     values : ndarray, read-only
-        float32, uint32 or uint8, in the shape the daemon states. Over the bytes of the message, without a copy, where the array
-        came in one piece (up to 1 MiB) and not as codes.
+        float32, uint32 or uint8, in the shape the daemon states. Over the bytes of the message,
+        without a copy, where the array came in one piece (up to 1 MiB) and not as codes.
     max_error : float
-        How far a value may be from what the daemon computed, in `unit`: 0 but for arrays that came as 16-bit codes.
+        How far a value may be from what the daemon computed, in `unit`: 0 but for arrays that came
+        as 16-bit codes.
     """
 
     name: str
@@ -95,7 +97,9 @@ class _Growing:
         return Array(self.name, self.unit, self.location, values, self.max_error)
 
     def _decoded(self, codes: npt.NDArray[Any]) -> npt.NDArray[np.float32]:
-        """value = box_min + code / 65535 * (box_max - box_min), to float32; see ArraySlice in the wire schema."""
+        """value = box_min + code / 65535 * (box_max - box_min), to float32; see ArraySlice in the
+        wire schema.
+        """
         low, high = self.box if codes.ndim > 1 else self.box[:, 0]
         values: npt.NDArray[np.float32] = (low + codes / 65535.0 * (high - low)).astype(np.float32)
         values.flags.writeable = False
@@ -108,7 +112,8 @@ class ArrayAssembler:
     Raises
     ------
     DataLossError
-        For a slice that does not follow the one before it, or goes beyond its shape, and for bytes that are missing.
+        For a slice that does not follow the one before it, or goes beyond its shape, and for bytes
+        that are missing.
     """
 
     def __init__(self) -> None:

@@ -42,7 +42,9 @@ def _channel_options(server: str) -> List[Tuple[str, Any]]:
 
 
 class Channel:
-    """What a Connection stands on, without the collections: they use it and it knows nothing of them. Thread-safe."""
+    """What a Connection stands on, without the collections: they use it and it knows nothing of
+    them. Thread-safe.
+    """
 
     def __init__(
         self,
@@ -79,7 +81,9 @@ class Channel:
         """What goes with every call: who calls."""
         return self._credentials.metadata()
 
-    def call(self, method: UnaryUnary[Request, Response], request: Request, *, timeout_s: Optional[float] = None) -> Response:
+    def call(
+        self, method: UnaryUnary[Request, Response], request: Request, *, timeout_s: Optional[float] = None
+    ) -> Response:
         """One request, one response; made again while the daemon is away, where that is safe.
 
             connection.call(connection.simulation_stub.GetSeries, GetSeriesRequest(name=name))
@@ -100,7 +104,9 @@ class Channel:
                 raise error from None
 
     def delete(self, method: UnaryUnary[Request, Response], request: Request) -> None:
-        """As ``call``; an attempt that was not answered may have deleted it, and then there is nothing left to find."""
+        """As ``call``; an attempt that was not answered may have deleted it, and then there is
+        nothing left to find.
+        """
         attempts = Attempts(self.retry, True)
         while True:
             try:
@@ -114,7 +120,9 @@ class Channel:
                 raise error from None
 
     def stream_items(self, stream: ResponseStream[Response]) -> Iterator[Response]:
-        """The responses of a stream, its error as a LipofillError. Leaving the iteration ends the stream."""
+        """The responses of a stream, its error as a LipofillError. Leaving the iteration ends the
+        stream.
+        """
         try:
             yield from stream
         except grpc.RpcError as problem:

@@ -27,11 +27,13 @@ class Connection(Channel):
     Parameters
     ----------
     server : str, optional
-        ``"host:port"`` or ``"unix:/path"``; default: the environment's LIPOFILL_SERVER, else 127.0.0.1:50061.
+        ``"host:port"`` or ``"unix:/path"``; default: the environment's LIPOFILL_SERVER, else
+        127.0.0.1:50061.
     credentials : Credentials, optional
         Default: from the environment, see Credentials.from_environment.
     retry : RetryPolicy, optional
-        How long calls are made again where that is safe: reads, deletions, and creates and commands, which bear a request_id.
+        How long calls are made again where that is safe: reads, deletions, and creates and
+        commands, which bear a request_id.
     timeout_s : float
         Of one attempt at a call.
 
@@ -66,7 +68,8 @@ class Connection(Channel):
         keep: bool = False,
         progress: Optional[ProgressCallback] = None,
     ) -> Run:
-        """Brings a plan to the daemon: uploads its scans, builds its model, creates its simulation. Entering the run starts it.
+        """Brings a plan to the daemon: uploads its scans, builds its model, creates its simulation.
+        Entering the run starts it.
 
         Parameters
         ----------

@@ -28,17 +28,19 @@ def is_local(server: str) -> bool:
 
 @dataclass(frozen=True)
 class Credentials:
-    """What protects the way to the daemon and says who calls. Secrets are in files, never in arguments.
+    """What protects the way to the daemon and says who calls. Secrets are in files, never in
+    arguments.
 
     Attributes
     ----------
     ca_file : str or None
         PEM of the authority that the daemon's certificate must come from. Turns TLS on.
     certificate_file, key_file : str or None
-        PEM of this client's own certificate and its key, for daemons that ask for one. Both or none; turns TLS on.
+        PEM of this client's own certificate and its key, for daemons that ask for one. Both or
+        none; turns TLS on.
     token_file : str or None
-        A bearer token, sent as ``authorization: Bearer ...`` with every call. Read again for every call, so that a token that is
-        renewed in place is taken up.
+        A bearer token, sent as ``authorization: Bearer ...`` with every call. Read again for every
+        call, so that a token that is renewed in place is taken up.
     server_name : str or None
         The name that the daemon's certificate must have, where it is not the host of the address.
     tls : bool
@@ -54,7 +56,9 @@ class Credentials:
 
     @classmethod
     def from_environment(cls) -> Credentials:
-        """LIPOFILL_TLS_CA, LIPOFILL_TLS_CERT, LIPOFILL_TLS_KEY, LIPOFILL_TOKEN_FILE, as the command line takes them."""
+        """LIPOFILL_TLS_CA, LIPOFILL_TLS_CERT, LIPOFILL_TLS_KEY, LIPOFILL_TOKEN_FILE, as the command
+        line takes them.
+        """
 
         def given(name: str) -> Optional[str]:
             return os.environ.get(f"LIPOFILL_{name}") or None
@@ -66,7 +70,9 @@ class Credentials:
         return self.tls or self.ca_file is not None or self.certificate_file is not None
 
     def check(self, server: str) -> None:
-        """Raises ValueError for a certificate without its key, and for a token that would go over a network in plain text."""
+        """Raises ValueError for a certificate without its key, and for a token that would go over a
+        network in plain text.
+        """
         if (self.certificate_file is None) != (self.key_file is None):
             raise ValueError("certificate_file and key_file belong together")
         if self.token_file is not None and not self.uses_tls and not is_local(server):

@@ -117,7 +117,9 @@ class Daemon:
             return self.kill()
 
     def kill(self) -> int:
-        """Ends it at once, as a crash would (SIGKILL). What it acknowledged is there after the next ``start``."""
+        """Ends it at once, as a crash would (SIGKILL). What it acknowledged is there after the next
+        ``start``.
+        """
         if self.is_running():
             self.signal(signal.SIGKILL)
         return self._process.wait() if self._process is not None else 0

@@ -1,4 +1,6 @@
-"""What goes wrong, as exceptions that carry what the daemon said: google.rpc.Status with ErrorInfo, BadRequest and RetryInfo."""
+"""What goes wrong, as exceptions that carry what the daemon said: google.rpc.Status with ErrorInfo,
+BadRequest and RetryInfo.
+"""
 
 from __future__ import annotations
 
@@ -37,12 +39,14 @@ class LipofillError(Exception):
     code : grpc.StatusCode
     message : str
     reason : str
-        ErrorInfo.reason, for programs, for example ``"FIELD_VIOLATION"`` or ``"DRAINING"``; empty without an ErrorInfo.
+        ErrorInfo.reason, for programs, for example ``"FIELD_VIOLATION"`` or ``"DRAINING"``; empty
+        without an ErrorInfo.
     metadata : Mapping[str, str]
         ErrorInfo.metadata.
     violations : tuple of FieldViolation
     retry_delay_s : float or None
-        When it makes sense to try again, in seconds from now: RetryInfo. The daemon did not begin what was asked.
+        When it makes sense to try again, in seconds from now: RetryInfo. The daemon did not begin
+        what was asked.
     from_daemon : bool
         Whether the daemon answered, rather than the connection failing.
     """
@@ -157,17 +161,33 @@ class SimulationFailedError(LipofillError):
 _CLASSES: Dict[grpc.StatusCode, Type[LipofillError]] = {
     kind.code: kind
     for kind in (
-        InvalidArgumentError, NotFoundError, AlreadyExistsError, FailedPreconditionError, ResourceExhaustedError, AbortedError,
-        UnavailableError, DeadlineExceededError, PermissionDeniedError, UnauthenticatedError, CancelledError, DataLossError,
+        InvalidArgumentError,
+        NotFoundError,
+        AlreadyExistsError,
+        FailedPreconditionError,
+        ResourceExhaustedError,
+        AbortedError,
+        UnavailableError,
+        DeadlineExceededError,
+        PermissionDeniedError,
+        UnauthenticatedError,
+        CancelledError,
+        DataLossError,
     )
-}  # fmt: skip
+}
 _CODES: Dict[int, grpc.StatusCode] = {code.value[0]: code for code in grpc.StatusCode}
 
 
 def error_from_status(status: status_pb2.Status) -> LipofillError:
-    """A google.rpc.Status, for example of an operation that failed, as an exception of the class of its code."""
+    """A google.rpc.Status, for example of an operation that failed, as an exception of the class of
+    its code.
+    """
     code = _CODES.get(status.code, grpc.StatusCode.UNKNOWN)
-    info, bad_request, retry = error_details_pb2.ErrorInfo(), error_details_pb2.BadRequest(), error_details_pb2.RetryInfo()
+    info, bad_request, retry = (
+        error_details_pb2.ErrorInfo(),
+        error_details_pb2.BadRequest(),
+        error_details_pb2.RetryInfo(),
+    )
     retry_delay_s: Optional[float] = None
     for detail in status.details:
         detail.Unpack(info)
@@ -186,7 +206,9 @@ def error_from_status(status: status_pb2.Status) -> LipofillError:
 
 
 def _status_of(error: Any) -> status_pb2.Status:
-    """The details in the trailers where there are any that can be read, with the call's own code and message."""
+    """The details in the trailers where there are any that can be read, with the call's own code
+    and message.
+    """
     status = status_pb2.Status()
     for key, value in error.trailing_metadata() or ():
         if key == _DETAILS_KEY:
@@ -200,12 +222,15 @@ def _status_of(error: Any) -> status_pb2.Status:
 
 
 def error_from_call(error: Any, server: str) -> LipofillError:
-    """A grpc.RpcError of a call to `server` as an exception that says which daemon was asked and what to do."""
+    """A grpc.RpcError of a call to `server` as an exception that says which daemon was asked and
+    what to do.
+    """
     status = _status_of(error)
     if not status.details and error.code() is grpc.StatusCode.UNAVAILABLE:
         status.message = f"no daemon answers at {server}; start lipofilld or name another ({status.message})"
     elif not status.details and error.code() is grpc.StatusCode.CANCELLED:
-        # Calls here are not cancelled by their caller: the daemon ended, and with it what was under way.
+        # Calls here are not cancelled by their caller: the daemon ended, and with it what was under
+        # way.
         status.code = grpc.StatusCode.UNAVAILABLE.value[0]
         status.message = f"the daemon at {server} ended before it answered"
     elif not status.details and error.code() is grpc.StatusCode.DEADLINE_EXCEEDED:

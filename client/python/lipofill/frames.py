@@ -15,7 +15,8 @@ from lipofill.v1 import frame_service_pb2 as pb
 class Meshes:
     """The meshes of a simulation or a model at rest.
 
-    ``meshes["skin.points"]`` is an (n, 3) float32 array in mm, ``meshes["skin.cells"]`` the (m, 4) uint32 indices into it.
+    ``meshes["skin.points"]`` is an (n, 3) float32 array in mm, ``meshes["skin.cells"]`` the (m, 4)
+    uint32 indices into it.
 
     Attributes
     ----------
@@ -78,7 +79,9 @@ class Frame:
         return iter(self.fields)
 
     def moved_points(self, mesh: str) -> npt.NDArray[Any]:
-        """Where the points of a mesh are now [mm], (n, 3): at rest plus ``"<mesh>.displacement"``."""
+        """Where the points of a mesh are now [mm], (n, 3): the points at rest plus
+        ``"<mesh>.displacement"``.
+        """
         points: npt.NDArray[Any] = self.meshes[f"{mesh}.points"] + self[f"{mesh}.displacement"]
         return points
 

@@ -39,8 +39,8 @@ def load_landmarks(path: str, region: model_pb2.ScanRegion, *, scan_unit: str = 
     Parameters
     ----------
     path : str
-        ``FILE.json`` with an object "landmarks" of names to [x, y, z], or ``FILE.json#object``; optionally "axes" with "left",
-        "up" and "forward", and "units".
+        ``FILE.json`` with an object "landmarks" of names to [x, y, z], or ``FILE.json#object``;
+        optionally "axes" with "left", "up" and "forward", and "units".
     region : lipofill.v1.ScanRegion
         Changed.
     scan_unit : {"mm", "cm", "m"}

@@ -28,7 +28,8 @@ class Models:
     def build(
         self, patient: str, spec: model_pb2.ModelSpec, *, progress: Optional[ProgressCallback] = None
     ) -> model_pb2.Model:
-        """Builds a model and waits for it. An interruption (Ctrl-C, an exception of `progress`) cancels the building too.
+        """Builds a model and waits for it. An interruption (Ctrl-C, an exception of `progress`)
+        cancels the building too.
 
         Raises
         ------
@@ -48,11 +49,15 @@ class Models:
         return model
 
     def check(self, patient: str, spec: model_pb2.ModelSpec) -> None:
-        """Raises what `build` would raise for the spec, as far as that is known without building."""
+        """Raises what `build` would raise for the spec, as far as it is known without one."""
         self._channel.call(self._stub.BuildModel, pb.BuildModelRequest(parent=patient, spec=spec, validate_only=True))
 
-    def _build(self, request: pb.BuildModelRequest, progress: Optional[ProgressCallback]) -> Optional[pb_operation.Operation]:
-        """None where the operation went with a daemon that ended: the same request then begins it anew, or finds what it made."""
+    def _build(
+        self, request: pb.BuildModelRequest, progress: Optional[ProgressCallback]
+    ) -> Optional[pb_operation.Operation]:
+        """None where the operation went with a daemon that ended: the same request then begins it
+        anew, or finds what it made.
+        """
         operation = self._channel.call(self._stub.BuildModel, request)
         try:
             return self._operations.wait(operation, progress=progress)
@@ -74,11 +79,15 @@ class Models:
         return self._channel.paged(self._stub.ListModels, pb.ListModelsRequest(parent=patient), "models")
 
     def delete(self, name: str) -> None:
-        """Results of its simulations stay. FailedPreconditionError while a simulation runs on it."""
+        """Keeps the results of its simulations. FailedPreconditionError while one runs on it."""
         self._channel.delete(self._stub.DeleteModel, pb.DeleteModelRequest(name=name))
 
     def download_meshes(self, name: str) -> Meshes:
-        """The model's meshes at rest: ``skin``, ``tissue`` and, where it has one, ``scan``; points in mm."""
+        """The model's meshes at rest: ``skin``, ``tissue`` and, where it has one, ``scan``; points
+        in mm.
+        """
         request = pb.DownloadModelMeshRequest(name=name)
-        stream = self._stub.DownloadModelMesh(request, timeout=self._channel.timeout_s, metadata=self._channel.metadata())
+        stream = self._stub.DownloadModelMesh(
+            request, timeout=self._channel.timeout_s, metadata=self._channel.metadata()
+        )
         return meshes_from_slices(self._channel.stream_items(stream))

@@ -50,5 +50,7 @@ class Patients:
         return self._channel.call(self._stub.UpdatePatient, pb.UpdatePatientRequest(patient=patient, update_mask=mask))
 
     def delete(self, name: str, *, force: bool = False) -> None:
-        """With `force` its scans and models go with it; without, FailedPreconditionError while it has some."""
+        """With `force` its scans and models go with it; without, FailedPreconditionError while it
+        has some.
+        """
         self._channel.delete(self._stub.DeletePatient, pb.DeletePatientRequest(name=name, force=force))

@@ -13,7 +13,9 @@ Shape = Union[geometry_pb2.ChartBox, simulation_pb2.Disc, geometry_pb2.FieldSamp
 
 
 def at_chart(xi: float, eta: float) -> geometry_pb2.SkinPoint:
-    """A place by its chart coordinates: (0, 0) is the first corner of the region, (1, 1) the third."""
+    """A place by its chart coordinates: (0, 0) is the first corner of the region, (1, 1) the
+    third.
+    """
     return geometry_pb2.SkinPoint(chart=geometry_pb2.ChartPoint(xi=xi, eta=eta))
 
 
@@ -41,8 +43,9 @@ def disc(centre: geometry_pb2.SkinPoint, radius_mm: float) -> simulation_pb2.Dis
 
 
 def samples(values: npt.ArrayLike) -> geometry_pb2.FieldSamples:
-    """A field by its values at points spaced evenly over the chart, both ends included: (n_eta, n_xi). Of a zone: where it is
-    painted, that is at least 0.5."""
+    """A field by its values at points spaced evenly over the chart, both ends included: (n_eta,
+    n_xi). Of a zone: where it is painted, that is at least 0.5.
+    """
     array = np.asarray(values, dtype=float)
     return geometry_pb2.FieldSamples(n_xi=array.shape[1], n_eta=array.shape[0], values=array.ravel())
 

@@ -20,8 +20,12 @@ from lipofill.v1 import geometry_pb2, model_pb2, plan_pb2, simulation_pb2
 PathLike = Union[str, "os.PathLike[str]"]
 Field = Union[float, geometry_pb2.ScalarField]
 
-_UNKNOWN_FIELD = re.compile(r'no field named "(?P<name>[^"]+)" at "Plan\.?(?P<path>[^"]*)".*?\[(?P<known>.*)\]', re.DOTALL)
-_UNKNOWN_NAME = re.compile(r"Invalid enum value (?P<name>.+) for enum type (?P<type>[\w.]+) at Plan\.(?P<path>[^\s\"]*)")
+_UNKNOWN_FIELD = re.compile(
+    r'no field named "(?P<name>[^"]+)" at "Plan\.?(?P<path>[^"]*)".*?\[(?P<known>.*)\]', re.DOTALL
+)
+_UNKNOWN_NAME = re.compile(
+    r"Invalid enum value (?P<name>.+) for enum type (?P<type>[\w.]+) at Plan\.(?P<path>[^\s\"]*)"
+)
 
 
 def _field(value: Field) -> geometry_pb2.ScalarField:
@@ -29,7 +33,9 @@ def _field(value: Field) -> geometry_pb2.ScalarField:
 
 
 def _violations_of(message: str) -> Tuple[FieldViolation, ...]:
-    """The field that a parser's message complains of, with the nearest name there is, or all that its value may be."""
+    """The field that a parser's message complains of, with the nearest name there is, or all that
+    its value may be.
+    """
     value = _UNKNOWN_NAME.search(message)
     if value is not None:
         known = plan_pb2.DESCRIPTOR.pool.FindEnumTypeByName(value["type"]).values_by_name
@@ -44,7 +50,8 @@ def _violations_of(message: str) -> Tuple[FieldViolation, ...]:
 
 
 class Plan:
-    """All that a prediction needs: the face, its model, and what is injected. The JSON of `lipofill run`.
+    """All that a prediction needs: the face, its model, and what is injected. The JSON of
+    `lipofill run`.
 
     Attributes
     ----------
@@ -56,9 +63,10 @@ class Plan:
     Examples
     --------
     >>> plan = Plan("plate").square(60, 60, n_xi=12, n_eta=12)
-    >>> plan.layer("skin", thickness_mm=2, youngs_modulus_kpa=100, poisson_ratio=0.45, density_kg_m3=1100)
-    >>> plan.film("deep", below="skin", n_xi=6, n_eta=6, zones={"middle": box(0.25, 0.75, 0.25, 0.75)})
-    >>> plan.inject("middle", volume_ml=0.5, rate_ml_per_s=1.0).settle(end_s=20)
+    >>> plan.layer("skin", thickness_mm=2, youngs_modulus_kpa=100, poisson_ratio=0.45,
+    density_kg_m3=1100) >>> plan.film("deep", below="skin", n_xi=6, n_eta=6, zones={"middle":
+    box(0.25, 0.75, 0.25, 0.75)}) >>> plan.inject("middle", volume_ml=0.5,
+    rate_ml_per_s=1.0).settle(end_s=20)
     """
 
     def __init__(self, name: str = "", description: str = "", *, folder: PathLike = ".") -> None:
@@ -67,13 +75,14 @@ class Plan:
 
     @classmethod
     def load(cls, path: PathLike) -> Plan:
-        """Reads a plan file. Fields are checked against the schema here, what they mean by the daemon.
+        """Reads a plan file. Fields are checked against the schema here, what they mean by the
+        daemon.
 
         Raises
         ------
         InvalidArgumentError
-            Naming the file, and as a violation the field that does not exist, with the nearest name that does, or the
-            field whose value is no name it knows, with those it does.
+            Naming the file, and as a violation the field that does not exist, with the nearest name
+            that does, or the field whose value is no name it knows, with those it does.
         OSError
         """
         path = Path(path)
@@ -98,7 +107,9 @@ class Plan:
         return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
     def save(self, path: PathLike) -> None:
-        """Writes the plan file. Files that the plan names are then relative to where it is written."""
+        """Writes the plan file. Files that the plan names are then relative to where it is
+        written.
+        """
         path = Path(path)
         saved = plan_pb2.Plan()
         saved.CopyFrom(self.message)
@@ -141,8 +152,10 @@ class Plan:
         landmarks: Optional[PathLike] = None,
         unit: str = "mm",
     ) -> Plan:
-        """A region of a scan, in n_xi x n_eta hexahedra: around named regions of the face, or between four corners,
-        anticlockwise seen from outside. With neither it follows from the zones of the films."""
+        """A region of a scan, in n_xi x n_eta hexahedra: around named regions of the face, or
+        between four corners, anticlockwise seen from outside. With neither it follows from the
+        zones of the films.
+        """
         self.message.scan.file, self.message.scan.unit = os.fspath(scan), unit_of(unit)
         if landmarks is not None:
             self.message.scan.landmarks_file = os.fspath(landmarks)
@@ -194,7 +207,9 @@ class Plan:
         extent: Optional[geometry_pb2.ChartBox] = None,
         rest_thickness_mm: Optional[Field] = None,
     ) -> Plan:
-        """A film of fat under the layer `below`. A zone is a box, a disc or samples (painted), or a region's name."""
+        """A film of fat under the layer `below`. A zone is a box, a disc or samples (painted), or a
+        region's name.
+        """
         film = self.simulation.films.add(name=name, below_layer=below, n_xi=n_xi, n_eta=n_eta, extent=extent)
         if rest_thickness_mm is not None:
             film.rest_thickness_mm.CopyFrom(_field(rest_thickness_mm))
@@ -237,8 +252,9 @@ class Plan:
         return self.folder / self.message.bone.file if self.message.bone.file else None
 
     def model_with_landmarks(self) -> model_pb2.ModelSpec:
-        """The model, the landmarks of the plan's landmarks file in its scan region, which follows from the zones where the plan
-        does not give it."""
+        """The model, the landmarks of the plan's landmarks file in its scan region, which follows
+        from the zones where the plan does not give it.
+        """
         spec = model_pb2.ModelSpec()
         spec.CopyFrom(self.model)
         _take_region_from_zones(spec, self.simulation)
@@ -255,7 +271,9 @@ class Plan:
 
 
 def _take_region_from_zones(spec: model_pb2.ModelSpec, simulation: simulation_pb2.SimulationSpec) -> None:
-    """Named regions and discs of all films, each once; boxes and painted zones lie on a chart that is not there yet."""
+    """Named regions and discs of all films, each once; boxes and painted zones lie on a chart that
+    is not there yet.
+    """
     region = spec.scan_region
     if not spec.HasField("scan_region") or region.corners or region.around.regions or region.around.discs:
         return

@@ -27,7 +27,8 @@ class RetryPolicy:
     patience_s : float
         From the first failure on; 0: not at all.
     first_delay_s, most_delay_s : float
-        The pause doubles from the one to the other. A RetryInfo of the daemon is honoured where it is longer.
+        The pause doubles from the one to the other. A RetryInfo of the daemon is honoured where it
+        is longer.
     """
 
     patience_s: float = 5.0
@@ -36,7 +37,9 @@ class RetryPolicy:
 
 
 def with_request_id(request: Request) -> Request:
-    """The request with a request_id of its own, where it has the field and none yet: repeated, it is carried out once."""
+    """The request with a request_id of its own, where it has the field and none yet: repeated, it
+    is carried out once.
+    """
     message: Any = request
     if "request_id" not in message.DESCRIPTOR.fields_by_name or message.request_id:
         return request
@@ -47,7 +50,9 @@ def with_request_id(request: Request) -> Request:
 
 
 def is_safe_to_repeat(request: Any) -> bool:
-    """Whether the daemon may get this request twice: it reads, it deletes, or it bears a request_id."""
+    """Whether the daemon may get this request twice: it reads, it deletes, or it bears a
+    request_id.
+    """
     descriptor = request.DESCRIPTOR
     return "request_id" in descriptor.fields_by_name or _REPEATABLE.fullmatch(descriptor.name) is not None
 
@@ -64,8 +69,8 @@ class Attempts:
     def wait_after(self, error: LipofillError) -> bool:
         """Waits before the next attempt; False where there should be none.
 
-        A RetryInfo says that nothing was begun, so that any call may be made again; a call that was not answered may have been
-        carried out.
+        A RetryInfo says that nothing was begun, so that any call may be made again; a call that was
+        not answered may have been carried out.
         """
         if self._give_up is None:
             self._give_up = time.monotonic() + self.policy.patience_s

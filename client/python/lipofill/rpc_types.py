@@ -1,4 +1,6 @@
-"""The types of the callables that gRPC makes of the methods of a service; gRPC 1.51 itself is untyped."""
+"""The types of the callables that gRPC makes of the methods of a service; gRPC 1.51 itself is
+untyped.
+"""
 
 from __future__ import annotations
 
@@ -12,15 +14,23 @@ Metadata = Sequence[Tuple[str, str]]
 class UnaryUnary(Protocol[Request, Response]):
     """One request, one response."""
 
-    def __call__(self, request: Request, timeout: Optional[float] = None, metadata: Optional[Metadata] = None) -> Response: ...
+    def __call__(
+        self, request: Request, timeout: Optional[float] = None, metadata: Optional[Metadata] = None
+    ) -> Response:
+        ...
 
 
 class ResponseStream(Protocol[Response]):
     """Responses as they come; ends with StopIteration or grpc.RpcError."""
 
-    def __iter__(self) -> Iterator[Response]: ...
-    def __next__(self) -> Response: ...
-    def cancel(self) -> bool: ...
+    def __iter__(self) -> Iterator[Response]:
+        ...
+
+    def __next__(self) -> Response:
+        ...
+
+    def cancel(self) -> bool:
+        ...
 
 
 class UnaryStream(Protocol[Request, Response]):
@@ -28,14 +38,18 @@ class UnaryStream(Protocol[Request, Response]):
 
     def __call__(
         self, request: Request, timeout: Optional[float] = None, metadata: Optional[Metadata] = None
-    ) -> ResponseStream[Response]: ...
+    ) -> ResponseStream[Response]:
+        ...
 
 
 class PendingResponse(Protocol[Response]):
     """A response to come."""
 
-    def result(self, timeout: Optional[float] = None) -> Response: ...
-    def cancel(self) -> bool: ...
+    def result(self, timeout: Optional[float] = None) -> Response:
+        ...
+
+    def cancel(self) -> bool:
+        ...
 
 
 class StreamUnary(Protocol[Request, Response]):
@@ -43,7 +57,10 @@ class StreamUnary(Protocol[Request, Response]):
 
     def __call__(
         self, request_iterator: Iterator[Request], timeout: Optional[float] = None, metadata: Optional[Metadata] = None
-    ) -> Response: ...
+    ) -> Response:
+        ...
+
     def future(
         self, request_iterator: Iterator[Request], timeout: Optional[float] = None, metadata: Optional[Metadata] = None
-    ) -> PendingResponse[Response]: ...
+    ) -> PendingResponse[Response]:
+        ...

@@ -40,7 +40,8 @@ class Run(Simulation):
         with connection.run(plan, progress=lipofill.print_progress) as run:
             result = run.wait()
 
-    Entering starts it, leaving stops it unless it has ended, and deletes what was made for it unless `keep`.
+    Entering starts it, leaving stops it unless it has ended, and deletes what was made for it
+    unless `keep`.
 
     Attributes
     ----------
@@ -104,7 +105,9 @@ class Run(Simulation):
             self.discard()
 
     def discard(self) -> None:
-        """Deletes the simulation, its model and, where it was made for the run and the caller may, the patient with the scans."""
+        """Deletes the simulation, its model and, where it was made for the run and the caller may,
+        the patient with the scans.
+        """
         with suppress(NotFoundError):
             self.delete()
         with suppress(NotFoundError):

@@ -39,7 +39,9 @@ def sha256_of(file: Path) -> str:
 
 
 class _Chunks:
-    """What the daemon does not have yet. gRPC takes the chunks on a thread of its own; what fails there is kept in `problem`."""
+    """What the daemon does not have yet. gRPC takes the chunks on a thread of its own; what fails
+    there is kept in `problem`.
+    """
 
     def __init__(self, file: Path, scan: pb.Scan, progress: Optional[ProgressCallback]) -> None:
         self._file = file
@@ -59,11 +61,14 @@ class _Chunks:
         size, offset, name = self._scan.size_bytes, self._scan.received_bytes, self._scan.name
         with open(self._file, "rb") as stream:
             stream.seek(offset)
-            # Also where all bytes are there already: the daemon may have ended before it could complete the scan.
+            # Also where all bytes are there already: the daemon may have ended before it could
+            # complete the scan.
             while (data := stream.read(CHUNK_BYTES)) or name:
                 yield pb.UploadScanRequest(name=name, offset=offset, data=data)
                 offset, name = offset + len(data), ""
-                report(self._progress, "upload", offset / max(size, 1), f"{offset} of {size} bytes of {self._file.name}")
+                report(
+                    self._progress, "upload", offset / max(size, 1), f"{offset} of {size} bytes of {self._file.name}"
+                )
 
 
 class Scans:
@@ -81,7 +86,8 @@ class Scans:
         unit: str = "mm",
         progress: Optional[ProgressCallback] = None,
     ) -> pb.Scan:
-        """Sends a scan in chunks of at most 1 MiB. Bytes that the daemon has of an earlier upload are not sent again.
+        """Sends a scan in chunks of at most 1 MiB. Bytes that the daemon has of an earlier upload
+        are not sent again.
 
         Parameters
         ----------
@@ -120,7 +126,7 @@ class Scans:
         return scan
 
     def _send(self, chunks: _Chunks) -> pb.Scan:
-        """One stream to its end. An exception of the progress callback, or in this thread, ends it."""
+        """Sends one stream to its end; an exception of the callback, or in this thread, ends it."""
         call = self._stub.UploadScan.future(iter(chunks), metadata=self._channel.metadata())
         try:
             scan = call.result()
@@ -134,7 +140,9 @@ class Scans:
         return scan
 
     def announce(self, patient: str, file: Union[str, os.PathLike[str]], *, unit: str = "mm") -> pb.Scan:
-        """Tells of a scan to come. The request id is made of the content: a repeated upload finds what the first one began."""
+        """Tells of a scan to come. The request id is made of the content: a repeated upload finds
+        what the first one began.
+        """
         path = Path(file)
         digest, scan_format = sha256_of(path), _FORMATS[path.suffix.lower()]
         identity = hashlib.sha256(f"{patient} {digest} {scan_format} {unit}".encode()).hexdigest()
@@ -158,7 +166,9 @@ class Scans:
     def download_mesh(self, name: str) -> Meshes:
         """The surface of a complete scan as it was read: ``scan.points`` in mm, ``scan.cells``."""
         request = pb.DownloadScanMeshRequest(name=name)
-        stream = self._stub.DownloadScanMesh(request, timeout=self._channel.timeout_s, metadata=self._channel.metadata())
+        stream = self._stub.DownloadScanMesh(
+            request, timeout=self._channel.timeout_s, metadata=self._channel.metadata()
+        )
         return meshes_from_slices(self._channel.stream_items(stream))
 
     def delete(self, name: str) -> None:

@@ -13,9 +13,11 @@ from lipofill.v1 import simulation_service_pb2 as pb
 
 
 class Series:
-    """Figures of every step. ``series["max_pressure_pa"]`` is a float64 array, a value a row; names as in SeriesRow, with units.
+    """Figures of every step. ``series["max_pressure_pa"]`` is a float64 array, a value a row; names
+    as in SeriesRow, with units.
 
-    ``probe_thickness_mm`` and ``probe_pressure_pa`` have a column a probe of the plan. Whole rows are in ``rows``.
+    ``probe_thickness_mm`` and ``probe_pressure_pa`` have a column a probe of the plan. Whole rows
+    are in ``rows``.
     """
 
     def __init__(self, rows: Iterable[simulation_pb2.SeriesRow]) -> None:

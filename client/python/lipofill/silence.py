@@ -8,7 +8,9 @@ from typing import Callable, Optional
 
 
 class SilenceWatch:
-    """Calls `on_silence` once when a wait lasts longer than `limit_s`. Only waits count, not what is done between them."""
+    """Calls `on_silence` once when a wait lasts longer than `limit_s`. Only waits count, not what
+    is done between them.
+    """
 
     def __init__(self, limit_s: float, on_silence: Callable[[], object]) -> None:
         self._limit_s = limit_s

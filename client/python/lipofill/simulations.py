@@ -30,8 +30,11 @@ Self = TypeVar("Self", bound="Simulation")
 
 
 _ENDED = (
-    messages.Simulation.SETTLED, messages.Simulation.FINISHED, messages.Simulation.STOPPED, messages.Simulation.FAILED
-)  # fmt: skip
+    messages.Simulation.SETTLED,
+    messages.Simulation.FINISHED,
+    messages.Simulation.STOPPED,
+    messages.Simulation.FAILED,
+)
 
 
 def has_ended(simulation: messages.Simulation) -> bool:
@@ -42,7 +45,8 @@ def has_ended(simulation: messages.Simulation) -> bool:
 class Simulation:
     """A simulation of the daemon, by its name. It runs on when its client leaves.
 
-    As a context manager it is started when entered, if it is READY, and stopped when left, unless it has ended.
+    As a context manager it is started when entered, if it is READY, and stopped when left, unless
+    it has ended.
 
     Attributes
     ----------
@@ -104,7 +108,9 @@ class Simulation:
         start_s: Optional[float] = None,
         site: Optional[geometry_pb2.SkinPoint] = None,
     ) -> messages.Simulation:
-        """Adds an injection to a simulation that has not ended; by default it starts now, or after those already due."""
+        """Adds an injection to a simulation that has not ended; by default it starts now, or after
+        those already due.
+        """
         injection = messages.Injection(
             zone=zone, volume_ml=volume_ml, rate_ml_per_s=rate_ml_per_s, start_s=start_s, site=site
         )
@@ -134,7 +140,9 @@ class Simulation:
         return fetch_series(self._channel, self.name)
 
     def evaluate(self, target_scan: str) -> pb.Evaluation:
-        """Distance of the simulated skin to a target scan, ``patients/{patient}/scans/{scan}``, in the same frame [mm]."""
+        """Distance of the simulated skin to a target scan, ``patients/{patient}/scans/{scan}``, in
+        the same frame [mm].
+        """
         request = pb.EvaluateSimulationRequest(name=self.name, target_scan=target_scan)
         return self._channel.call(self._stub.EvaluateSimulation, request)
 
@@ -151,13 +159,15 @@ class Simulation:
         on_reconnect: Optional[Callable[[LipofillError], object]] = None,
         **choices: Any,
     ) -> Watch:
-        """Frames as they are computed, until the simulation ends. Of one that has ended: its last frame.
+        """Frames as they are computed, until the simulation ends. Of one that has ended: its last
+        frame.
 
         Parameters
         ----------
         delivery : {"LATEST", "EVERY"}
-            LATEST skips frames that the viewer is too slow for and counts them; EVERY has all, and gives up a viewer that falls
-            too far behind (the watch then goes on by itself where it was).
+            LATEST skips frames that the viewer is too slow for and counts them; EVERY has all, and
+            gives up a viewer that falls too far behind (the watch then goes on by itself where it
+            was).
         meshes : sequence of str
             "skin", "scan", "film/<film>", "tissue"; default: skin and every film.
         fields : sequence of str
@@ -165,11 +175,13 @@ class Simulation:
         interval_ms : float
             Simulated time between frames; default: every step.
         max_rate_hz : float
-            LATEST: at most so many frames a second of the clock; 0: no bound; default 60, less of many viewers.
+            LATEST: at most so many frames a second of the clock; 0: no bound; default 60, less of
+            many viewers.
         compact : bool
             Half the bytes: 16-bit codes, decoded to float32 with Array.max_error stated.
         acknowledge : int
-            At most so many frames are on their way: the next one is then the newest, also after a pause of the viewer.
+            At most so many frames are on their way: the next one is then the newest, also after a
+            pause of the viewer.
         heartbeat_ms : float
         seen : Frame
             Resume after this frame.
@@ -187,7 +199,9 @@ class Simulation:
         return Watch(self._channel, request, patience_s=patience_s, on_reconnect=on_reconnect)
 
     def final_frame(self, *, meshes: Sequence[str] = ()) -> Frame:
-        """The last frame of a simulation that has ended; NotFoundError where the daemon keeps none."""
+        """The last frame of a simulation that has ended; NotFoundError where the daemon keeps
+        none.
+        """
         last: Optional[Frame] = None
         with self.watch(meshes=meshes) as frames:
             for last in frames:
@@ -267,9 +281,11 @@ class Simulations:
         return self._channel.call(self._stub.CreateSimulation, request, timeout_s=CREATION_TIMEOUT_S)
 
     def check_plan(self, spec: messages.SimulationSpec) -> pb.CheckPlanResponse:
-        """Where the zones of a plan are on the model that the spec names, what is wrong with it and what is worth knowing.
+        """Where the zones of a plan are on the model that the spec names, what is wrong with it and
+        what is worth knowing.
 
-        A plan that is wrong raises nothing: see ``violations`` of what is returned. No simulation is made.
+        A plan that is wrong raises nothing: see ``violations`` of what is returned. No simulation
+        is made.
         """
         request = pb.CheckPlanRequest(spec=spec)
         return self._channel.call(self._stub.CheckPlan, request, timeout_s=CREATION_TIMEOUT_S)

@@ -13,7 +13,9 @@ _Key = Tuple[str, Tuple[str, ...], Tuple[str, ...]]
 
 
 class Topologies:
-    """The last meshes of the last simulations that were watched, a set for each choice of meshes and fields. Thread-safe."""
+    """The last meshes of the last simulations that were watched, a set for each choice of meshes
+    and fields. Thread-safe.
+    """
 
     def __init__(self, most: int = 16) -> None:
         self._most = most

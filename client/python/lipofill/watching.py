@@ -10,7 +10,13 @@ from typing import Callable, Iterator, Literal, Optional, Sequence, Type
 import grpc
 
 from lipofill.channel import Channel
-from lipofill.errors import DeadlineExceededError, LipofillError, ResourceExhaustedError, UnavailableError, error_from_call
+from lipofill.errors import (
+    DeadlineExceededError,
+    LipofillError,
+    ResourceExhaustedError,
+    UnavailableError,
+    error_from_call,
+)
 from lipofill.frames import Frame, Meshes, StreamAssembler
 from lipofill.rpc_types import ResponseStream
 from lipofill.silence import SilenceWatch
@@ -56,14 +62,15 @@ class Watch:
     """Iterates over frames. A context manager: entering it opens the stream, leaving it closes it.
 
         run = channel.run(plan)
-        with run.watch(delivery="EVERY", meshes=["skin"]) as frames, run:  # watched before it starts: no frame is missed
+        with run.watch(delivery="EVERY", meshes=["skin"]) as frames, run:  # watched before it starts: none is missed
             for frame in frames:
                 print(frame.time_s, frame["skin.displacement"].max())
 
-    A stream that breaks (the daemon ends and comes back, or drops a viewer that fell behind) is taken up again after the last frame
-    that came, by epoch and sequence, for `patience_s` without a frame. Meshes come once; who has them by their hash gets none.
-    A daemon that is silent for four heartbeats counts as a broken stream. With acknowledgements, a frame is taken once the next
-    one is asked for.
+    A stream that breaks (the daemon ends and comes back, or drops a viewer that fell behind) is
+    taken up again after the last frame that came, by epoch and sequence, for `patience_s` without a
+    frame. Meshes come once; who has them by their hash gets none. A daemon that is silent for four
+    heartbeats counts as a broken stream. With acknowledgements, a frame is taken once the next one
+    is asked for.
 
     Raises
     ------
@@ -100,7 +107,9 @@ class Watch:
         return self._assembler.meshes
 
     def __enter__(self) -> Watch:
-        """Opens the stream and waits for the first message: from then on every frame is the viewer's."""
+        """Opens the stream and waits for the first message: from then on every frame is the
+        viewer's.
+        """
         while self._stream is None:
             try:
                 self._came_first = self._receive()
@@ -191,13 +200,17 @@ class Watch:
             self._channel.call(
                 self._channel.frame_stub.AcknowledgeFrame,
                 pb.AcknowledgeFrameRequest(
-                    simulation=self._request.simulation, viewer=self._request.viewer, epoch=frame.epoch, sequence=frame.sequence
+                    simulation=self._request.simulation,
+                    viewer=self._request.viewer,
+                    epoch=frame.epoch,
+                    sequence=frame.sequence,
                 ),
             )
         except (UnavailableError, DeadlineExceededError) as error:
             raise UnavailableError(error.message) from None
         except LipofillError as error:
-            # The viewer may be gone with its stream, which then says why; a request that is wrong is told.
+            # The viewer may be gone with its stream, which then says why; a request that is wrong
+            # is told.
             if error.code in (grpc.StatusCode.INVALID_ARGUMENT, grpc.StatusCode.PERMISSION_DENIED):
                 raise
 

@@ -66,7 +66,7 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
       options: {
         listen: { ...text, default: "127.0.0.1:8080" },
         "insecure-listen-anywhere": { type: "boolean", default: false },
-        daemon: { ...text, default: environment["LIPOFILL_SERVER"] ?? "127.0.0.1:50061" },
+        daemon: { ...text, default: environment.LIPOFILL_SERVER ?? "127.0.0.1:50061" },
         "daemon-ca": { ...text, default: "" },
         page: text,
         samples: text,
@@ -78,13 +78,13 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
     throw new UsageError((error as Error).message);
   }
   if (values.help) return "help";
-  const { host, port } = parseAddress(values.listen!);
+  const { host, port } = parseAddress(values.listen);
   if (!isLoopback(host) && !values["insecure-listen-anywhere"]) {
     throw new UsageError(
       `--listen is '${values.listen}', which others can reach in plain text; see --insecure-listen-anywhere`,
     );
   }
-  if (!/^(unix:.+|[^:]+:\d{1,5}|\[.+\]:\d{1,5})$/.test(values.daemon!)) {
+  if (!/^(unix:.+|[^:]+:\d{1,5}|\[.+\]:\d{1,5})$/.test(values.daemon)) {
     throw new UsageError(`--daemon is '${values.daemon}', must be host:port or unix:/path`);
   }
   if (values["daemon-ca"] && !existsSync(values["daemon-ca"])) {
@@ -95,8 +95,8 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
   return {
     host,
     port,
-    daemon: values.daemon!,
-    daemonCa: values["daemon-ca"]!,
+    daemon: values.daemon,
+    daemonCa: values["daemon-ca"],
     page: checkFolder("--page", values.page ?? join(beside, "page"), "index.html"),
     samples:
       values.samples === undefined
@@ -104,6 +104,6 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
           ? examples
           : ""
         : checkFolder("--samples", values.samples, "plans"),
-    portFile: values["port-file"]!,
+    portFile: values["port-file"],
   };
 }

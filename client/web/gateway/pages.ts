@@ -40,8 +40,8 @@ function refuse(response: ServerResponse, status: number, text: string): void {
 
 async function sendFile(file: string, request: IncomingMessage, response: ServerResponse): Promise<void> {
   const found = await stat(file).catch(() => undefined);
-  if (found === undefined || !found.isFile()) return refuse(response, 404, "not found");
-  const lasting = /\/assets\//.test(file); // named by their content
+  if (!found?.isFile()) return refuse(response, 404, "not found");
+  const lasting = file.includes("/assets/"); // named by their content
   response.writeHead(200, {
     "content-type": types[extname(file)] ?? "application/octet-stream",
     "content-length": found.size,

@@ -1,8 +1,8 @@
 // Every method of the service, passed on to the daemon as it is.
 //
-// Nothing is kept here: a stream's next message is taken from the daemon when the browser has room for it, so a slow
-// browser slows its own stream, by the flow control of both connections, and costs no memory. The transport connects
-// again by itself when the daemon comes back.
+// Nothing is kept here: a stream's next message is taken from the daemon when the browser has room
+// for it, so a slow browser slows its own stream, by the flow control of both connections, and
+// costs no memory. The transport connects again by itself when the daemon comes back.
 import type { DescMethod, DescMethodStreaming, DescMethodUnary, DescService, Message } from "@bufbuild/protobuf";
 import { Code, ConnectError, type ConnectRouter, type HandlerContext, type Transport } from "@connectrpc/connect";
 import { createGrpcTransport } from "@connectrpc/connect-node";
@@ -51,8 +51,8 @@ function answer(from: Headers, context: HandlerContext): void {
 /**
  * What the daemon says stays as it is; that it cannot be reached is said in words for people.
  *
- * A connection that is lost under a call ends it in many ways: refused, reset, or cancelled by the transport though
- * nobody cancelled it. The daemon's own errors carry details, these do not.
+ * A connection that is lost under a call ends it in many ways: refused, reset, or cancelled by the
+ * transport though nobody cancelled it. The daemon's own errors carry details, these do not.
  */
 function explain(cause: unknown, signal: AbortSignal): ConnectError {
   const error = ConnectError.from(cause);

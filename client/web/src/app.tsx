@@ -19,7 +19,7 @@ function Credentials() {
         method="dialog"
         onSubmit={(event) => {
           event.preventDefault();
-          setToken(String(new FormData(event.currentTarget).get("token")));
+          setToken(new FormData(event.currentTarget).get("token") as string);
           [asking.value, notice.value] = [false, ""];
         }}
       >

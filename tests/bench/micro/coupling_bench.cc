@@ -53,7 +53,8 @@ void solve(benchmark::State& state, Precision precision) {
   state.SetBytesProcessed(2 * state.iterations() * factor.analysis().n_values() * bytes_of_a_value);
 }
 
-/// Thickness and pressure of the fat after a step, from those before it, over tissue that gives way.
+/// Thickness and pressure of the fat after a step, from those before it, over tissue that gives
+/// way.
 void film_solve(benchmark::State& state) {
   MicroCase& micro = micro_case(state.range(0));
   CoupledFactor factor(analyse(micro));

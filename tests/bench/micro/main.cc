@@ -1,5 +1,5 @@
-// lipofill_microbench: the parts of a step one by one, at 1, 4 and 16 times the paper's size; items are hexahedra, film
-// cells, triangles or frames. Options are those of Google Benchmark.
+// lipofill_microbench: the parts of a step one by one, at 1, 4 and 16 times the paper's size; items
+// are hexahedra, film cells, triangles or frames. Options are those of Google Benchmark.
 
 #include <benchmark/benchmark.h>
 #include <omp.h>

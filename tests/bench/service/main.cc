@@ -1,5 +1,5 @@
-// Measures a running daemon: many sessions, many viewers, start-up. Tables go to the error output, JSON to the standard
-// output or a file.
+// Measures a running daemon: many sessions, many viewers, start-up. Tables go to the error output,
+// JSON to the standard output or a file.
 
 #include <CLI/CLI.hpp>
 #include <fstream>

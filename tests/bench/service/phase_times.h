@@ -11,7 +11,7 @@ namespace lipofill::bench {
 struct Phase {
   std::string name;
   double wall_ms = 0.0;
-  double cpu_ms = 0.0;  ///< of this process
+  double cpu_ms = 0.0;  ///< this process took it
 };
 
 /// Times pieces of work that follow each other.

@@ -30,7 +30,8 @@ std::string without_number(const std::string& name) {
   return name.substr(0, name.find('/'));
 }
 
-/// User and system time, ended threads included: fields 14 and 15, counted after the name in brackets.
+/// User and system time, ended threads included: fields 14 and 15, counted after the name in
+/// brackets.
 double cpu_s_of_process(const std::string& folder) {
   const std::string line = first_line(folder + "/stat");
   const size_t after_name = line.rfind(')');

@@ -9,10 +9,10 @@ namespace lipofill::bench {
 
 /// What the kernel tells of a process: /proc/PID.
 struct ProcessFigures {
-  double cpu_s = 0.0;                          ///< of all threads, ended ones too
+  double cpu_s = 0.0;                          ///< all threads took it, ended ones too
   double resident_mb = 0.0;                    ///< 1 MB: 10^6 bytes
   int threads = 0;                             ///< alive
-  std::map<std::string, double> cpu_s_of;      ///< of the threads alive, by their name without its number
+  std::map<std::string, double> cpu_s_of;      ///< what threads alive took, by their name without its number
   std::map<std::string, int> threads_of_name;  ///< the same
 
   /// CPU seconds of the threads of that name, 0 where there is none.

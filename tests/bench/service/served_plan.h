@@ -39,8 +39,8 @@ class ServedPlan {
   std::vector<std::string> meshes() const;
   int scan_triangles() const { return scan_triangles_; }
 
-  /// simulations/ID of the plan, not started, that runs for a simulated time in equal steps and is never
-  /// settled.
+  /// simulations/ID of the plan, not started, that runs for a simulated time in equal steps and is
+  /// never settled.
   absl::Status create(const std::string& id, double simulated_s);
   absl::Status start(const std::string& id);
   absl::Status remove(const std::string& id);

@@ -12,7 +12,7 @@ namespace lipofill::bench {
 
 /// From the file of a scan to the first frame of a simulation on it, and its first step.
 struct StartupTable {
-  int triangles = 0;  ///< of the scan as it is in the file
+  int triangles = 0;  ///< the scan's file has so many
   std::vector<Phase> phases;
   std::string state_hash;  ///< after the first step
 
@@ -26,7 +26,8 @@ absl::StatusOr<StartupTable> measure_served_startup(const client::PlanFile& plan
 /// In this process, with the parts of building a model apart.
 absl::StatusOr<StartupTable> measure_startup(const client::PlanFile& plan);
 
-/// Writes the plan's scan with every triangle cut in four, `times` times over, in the format of the file's extension.
+/// Writes the plan's scan with every triangle cut in four, `times` times over, in the format of the
+/// file's extension.
 absl::Status write_refined_scan(const client::PlanFile& plan, int times, const std::filesystem::path& file);
 
 }  // namespace lipofill::bench

@@ -13,15 +13,15 @@ struct ViewersRow {
   int viewers = 0;
   double steps = 0.0;
   double wall_s = 0.0;
-  double worker_cpu_s = 0.0;     ///< of the thread that steps
-  double transport_cpu_s = 0.0;  ///< of the daemon's other threads: encoding and sending
+  double worker_cpu_s = 0.0;     ///< the thread that steps took it
+  double transport_cpu_s = 0.0;  ///< the daemon's other threads took it to encode and send
   double frames = 0.0;           ///< seen by a viewer, mean
-  double sent_mb = 0.0;          ///< to all viewers
+  double sent_mb = 0.0;          ///< all viewers together were sent it
 };
 
-/// Runs the plan for a simulated time [s] with each number of viewers in turn, `rounds` times over, on one daemon. A
-/// row a number of viewers: the run with the median of worker_cpu_s. Viewers watch the meshes named (none: what the
-/// daemon shows who names none), LATEST, every step.
+/// Runs the plan for a simulated time [s] with each number of viewers in turn, `rounds` times over,
+/// on one daemon. A row a number of viewers: the run with the median of worker_cpu_s. Viewers watch
+/// the meshes named (none: what the daemon shows who names none), LATEST, every step.
 absl::StatusOr<std::vector<ViewersRow>> measure_viewers(const client::PlanFile& plan, const std::vector<int>& viewers,
                                                         const std::vector<std::string>& meshes, double simulated_s,
                                                         int rounds);

@@ -13,14 +13,16 @@
 
 namespace lipofill::testing {
 
-/// A daemon that dies and is started again on the same data, each time on another port, while clients go on calling.
+/// A daemon that dies and is started again on the same data, each time on another port, while
+/// clients go on calling.
 class ChaosDaemon {
  public:
   ChaosDaemon(std::string data, std::vector<std::string> arguments);
 
   /// SIGKILL, then a new one that serves.
   void kill_and_restart();
-  /// The same, with one between that is killed so soon after its start that it may not have come to serve.
+  /// The same, with one between that is killed so soon after its start that it may not have come to
+  /// serve.
   void kill_twice_and_restart(std::chrono::milliseconds lifetime);
 
   std::shared_ptr<grpc::Channel> channel() const;

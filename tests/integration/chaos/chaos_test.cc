@@ -1,6 +1,7 @@
-// The daemon is killed with SIGKILL at seeded random moments while clients create, steer, keep, restore and delete
-// simulations, watch them and upload scans; what they were told must hold. LIPOFILL_CHAOS_KILLS and LIPOFILL_CHAOS_SEED
-// say how often and in which order (deploy/chaos), LIPOFILL_CHAOS_KEEP where to leave data and log when it fails.
+// The daemon is killed with SIGKILL at seeded random moments while clients create, steer, keep,
+// restore and delete simulations, watch them and upload scans; what they were told must hold.
+// LIPOFILL_CHAOS_KILLS and LIPOFILL_CHAOS_SEED say how often and in which order (deploy/chaos),
+// LIPOFILL_CHAOS_KEEP where to leave data and log when it fails.
 
 #include <cstdlib>
 #include <filesystem>
@@ -34,7 +35,8 @@ v1::ModelSpec small_square() {
     layers { name: "deep" thickness_mm { constant: 4 } youngs_modulus_kpa: 20 poisson_ratio: 0.45 density_kg_m3: 1000 })");
 }
 
-/// Every file below the data directory belongs to a record, and every record's file is there and whole.
+/// Every file below the data directory belongs to a record, and every record's file is there and
+/// whole.
 void check_files(const std::string& data) {
   const auto store = server::SqliteStore::open(data + "/lipofill.sqlite");
   ASSERT_TRUE(store.ok()) << store.status();

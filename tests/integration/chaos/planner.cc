@@ -75,7 +75,8 @@ v1::Simulation Planner::get(const std::string& name) {
   return simulation;
 }
 
-/// A patient and a model: the operation that builds it may die with its daemon, the model may be there all the same.
+/// A patient and a model: the operation that builds it may die with its daemon, the model may be
+/// there all the same.
 void Planner::prepare() {
   v1::CreatePatientRequest patient;
   patient.set_patient_id(id_);
@@ -154,7 +155,8 @@ void Planner::act() {
     case 4:
       return branch();
     default:
-      // Where steps grow it matters after which one an injection comes: there it comes while PAUSED.
+      // Where steps grow it matters after which one an injection comes: there it comes while
+      // PAUSED.
       return adaptive_ ? pause_and_resume() : inject();
   }
 }

@@ -23,9 +23,10 @@ struct Ledger {
   int commands = 0;
 };
 
-/// A client that creates simulations, injects, pauses, resumes, keeps and restores their states, stops and deletes
-/// them, repeats what was not answered with the same request_id, and checks after each answer that all it was told
-/// before still holds. In the end every simulation must have the hash of an unbroken run of what was acknowledged.
+/// A client that creates simulations, injects, pauses, resumes, keeps and restores their states,
+/// stops and deletes them, repeats what was not answered with the same request_id, and checks after
+/// each answer that all it was told before still holds. In the end every simulation must have the
+/// hash of an unbroken run of what was acknowledged.
 class Planner {
  public:
   Planner(const ChaosDaemon& daemon, const v1::ModelSpec& model, int number, uint64_t seed);
@@ -81,7 +82,7 @@ class Planner {
   int simulations_ = 0;
 
   mutable std::mutex mutex_;
-  std::string name_;  ///< of the simulation at hand
+  std::string name_;  ///< names the simulation at hand
   bool adaptive_ = false;
   bool ended_ = false;
   bool paused_ = false;

@@ -9,8 +9,8 @@
 
 namespace lipofill::testing {
 
-/// Watches one simulation after the other, takes broken streams up again where they were, and checks that epochs never
-/// fall and that sequence numbers rise by one within an epoch.
+/// Watches one simulation after the other, takes broken streams up again where they were, and
+/// checks that epochs never fall and that sequence numbers rise by one within an epoch.
 class Spectator {
  public:
   /// @param present  names the simulation to watch; empty: none yet

@@ -9,7 +9,8 @@
 
 namespace lipofill::testing {
 
-/// Uploads scans and goes on where a dead daemon left off; a scan that was acknowledged to be complete stays whole.
+/// Uploads scans and goes on where a dead daemon left off; a scan that was acknowledged to be
+/// complete stays whole.
 class Uploader {
  public:
   explicit Uploader(const ChaosDaemon& daemon) : daemon_(daemon) {}

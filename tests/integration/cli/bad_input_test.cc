@@ -91,7 +91,8 @@ TEST_F(BadInputTest, PicturesOfNothing) {
   expect_failure("lipofill render .", 2, "holds no");
   write("skin_0000.vtp", "not XML");
   expect_failure("lipofill render .", 2, "cannot read the mesh");
-  // A screen that is not there is not the end: xvfb-run is tried next, and it is the file that is refused.
+  // A screen that is not there is not the end: xvfb-run is tried next, and it is the file that is
+  // refused.
   expect_failure("env DISPLAY=:4711 lipofill render .", 2, "cannot read the mesh");
 }
 

@@ -59,7 +59,8 @@ class RenderTest : public CliTest {
     return value;
   }
 
-  /// The share of the pixels in a part of the sheet (as shares of it, from the lower left) of which `is` holds.
+  /// The share of the pixels in a part of the sheet (as shares of it, from the lower left) of which
+  /// `is` holds.
   template <typename Test>
   double share(double left, double bottom, double right, double top, const Test& is) const {
     int all = 0, found = 0;
@@ -85,7 +86,8 @@ class RenderTest : public CliTest {
     read_sheet("out/picture.png");
   }
 
-  /// The band that the summary's pressure lies in, once its colour was found in the panel of the pressure.
+  /// The band that the summary's pressure lies in, once its colour was found in the panel of the
+  /// pressure.
   size_t expect_band_of_pressure() const {
     const double pressure_pa = read_json("out/summary.json")["mean_pressure_pa"];
     size_t i = 0;

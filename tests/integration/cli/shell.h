@@ -15,8 +15,8 @@ struct CommandResult {
   std::string errors;
 };
 
-/// Runs a line in a shell, `lipofill` being the real binary and `lipofilld` beside it. Its variables LIPOFILL_SERVER
-/// and DISPLAY are those named in the line only.
+/// Runs a line in a shell, `lipofill` being the real binary and `lipofilld` beside it. Its
+/// variables LIPOFILL_SERVER and DISPLAY are those named in the line only.
 CommandResult run_shell(const std::string& line);
 
 /// A shell line on its way; for what must be interrupted.

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Checks the container's recipe without building it: every library that the programs load must come with the packages of
-the last stage or what they depend on, every file it copies must be there, every setting it makes must exist.
+"""Checks the container's recipe without building it: every library that the programs load must come
+with the packages of the last stage or what they depend on, every file it copies must be there,
+every setting it makes must exist.
 
     check_container.py DOCKERFILE ROOT LIPOFILLD LIPOFILL
 

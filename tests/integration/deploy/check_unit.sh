@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Checks the systemd unit with systemd's own tools: that it is understood, and that it keeps the daemon in its sandbox.
+# Checks the systemd unit with systemd's own tools: that it is understood, and that it keeps the
+# daemon in its sandbox.
 #
 #   check_unit.sh UNIT LIPOFILLD
 #

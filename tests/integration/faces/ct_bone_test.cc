@@ -1,5 +1,5 @@
-// The head CT of Debian's invesalius-examples: its skin and its bone extracted, and muscle down to the bone between
-// them.
+// The head CT of Debian's invesalius-examples: its skin and its bone extracted, and muscle down to
+// the bone between them.
 
 #include <filesystem>
 #include <fstream>

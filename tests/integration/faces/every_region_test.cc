@@ -1,8 +1,9 @@
-// Every named region, on both sides of every face at hand: the model is built around the region, fat is injected, and
-// the tissue comes to rest; or the region is refused with what is to blame. At least 98 of 100 come to rest.
+// Every named region, on both sides of every face at hand: the model is built around the region,
+// fat is injected, and the tissue comes to rest; or the region is refused with what is to blame. At
+// least 98 of 100 come to rest.
 //
-// Without more it takes a few faces; with LIPOFILL_EVERY_FACE=1 all of them (deploy/faces). LIPOFILL_FACE and
-// LIPOFILL_REGION, regular expressions, choose some.
+// Without more it takes a few faces; with LIPOFILL_EVERY_FACE=1 all of them (deploy/faces).
+// LIPOFILL_FACE and LIPOFILL_REGION, regular expressions, choose some.
 
 #include <gmock/gmock.h>
 
@@ -30,7 +31,8 @@ namespace {
 constexpr double kLeastShare = 0.98;
 constexpr double kMeanThickness = 1.5e-3;  // [m] of the fat that is injected
 constexpr int kHexahedra = 24;             // along each direction of the chart
-/// Faces that are run without being asked for all: a whole head, one of another shape, and two masks.
+/// Faces that are run without being asked for all: a whole head, one of another shape, and two
+/// masks.
 constexpr std::array kUsual = {"head_00", "head_06", "mask_01", "mask_04"};
 
 std::string setting(const char* name) {

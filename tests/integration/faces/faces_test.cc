@@ -1,5 +1,5 @@
-// The sample plan of the jaw from scan to result, by one command, on the shipped face and on real scans. The plan's
-// landmarks carry it from one face to another.
+// The sample plan of the jaw from scan to result, by one command, on the shipped face and on real
+// scans. The plan's landmarks carry it from one face to another.
 
 #include <filesystem>
 #include <iostream>
@@ -21,7 +21,8 @@ constexpr const char* kJawAngle = LIPOFILL_PLANS "/jaw_angle.json";
 
 class FacesTest : public CliTest {
  protected:
-  /// Carries the plan out into the folder "out" and returns its summary; null when that does not succeed.
+  /// Carries the plan out into the folder "out" and returns its summary; null when that does not
+  /// succeed.
   json run_jaw_angle(const std::string& options) const {
     const CommandResult result = run("lipofill run '" + std::string(kJawAngle) +
                                      "' --out out --spawn --discard --quiet --interval-ms 0 --json " + options);
@@ -46,7 +47,8 @@ double number(const json& from, const char* name) {
   return from.at(name).get<double>();
 }
 
-/// What must hold on any face: the tissue comes to rest, no fat is lost, and the pockets hold the fat the films say.
+/// What must hold on any face: the tissue comes to rest, no fat is lost, and the pockets hold the
+/// fat the films say.
 void expect_sound(const json& summary) {
   ASSERT_TRUE(summary.is_object());
   EXPECT_EQ(summary.at("state"), "SETTLED") << summary.at("reason");

@@ -1,5 +1,6 @@
-// The results of the sample plans, pinned: the hash of the state that each ends in, by the real daemon. They are the
-// same on every x86-64-v3 processor. `deploy/pin` writes pinned_results.json anew; the CHANGELOG says when and why.
+// The results of the sample plans, pinned: the hash of the state that each ends in, by the real
+// daemon. They are the same on every x86-64-v3 processor. `deploy/pin` writes pinned_results.json
+// anew; the CHANGELOG says when and why.
 
 #include <chrono>
 #include <cstdlib>
@@ -97,8 +98,8 @@ TEST_F(PinnedWays, ARestoredSimulationEndsAsTheOneThatWasNeverInterrupted) {
   EXPECT_EQ(pinned()["jaw_angle"]["restored"], pinned()["jaw_angle"]["settled"]);
 }
 
-/// Kernels that OpenBLAS would take on other processors; what this one cannot run, OpenBLAS itself would refuse or
-/// replace, and the pinned family comes before that.
+/// Kernels that OpenBLAS would take on other processors; what this one cannot run, OpenBLAS itself
+/// would refuse or replace, and the pinned family comes before that.
 TEST_F(PinnedWays, TheKernelsThatOpenBlasWouldChooseDoNotMatter) {
   for (const char* family : {"Prescott", "Nehalem", "Sandybridge", "Haswell", "Zen", "SkylakeX", "Cooperlake"}) {
     SCOPED_TRACE(family);

@@ -1,4 +1,5 @@
-// Every sample plan is accepted and starts well: each runs for a quarter of a simulated second by one command.
+// Every sample plan is accepted and starts well: each runs for a quarter of a simulated second by
+// one command.
 
 #include <algorithm>
 #include <filesystem>

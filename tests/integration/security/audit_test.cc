@@ -1,4 +1,5 @@
-// The audit log of the real daemon: what is in it, what is not, and that nothing happens without it.
+// The audit log of the real daemon: what is in it, what is not, and that nothing happens without
+// it.
 
 #include <filesystem>
 #include <fstream>
@@ -19,7 +20,8 @@ class AuditTest : public SecureTest {
   AuditTest() : AuditTest(std::vector<std::string>{}) {}
   explicit AuditTest(const std::vector<std::string>& arguments) : SecureTest(arguments) {}
 
-  /// Lines about a method, "PatientService/GetPatient". A call's last line may come a moment after its answer.
+  /// Lines about a method, "PatientService/GetPatient". A call's last line may come a moment after
+  /// its answer.
   std::vector<Json> lines_of(const std::string& method) {
     std::vector<Json> lines;
     std::istringstream file(read_whole_file(audit_file()));

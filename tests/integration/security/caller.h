@@ -19,7 +19,8 @@ struct Answer {
   std::string reason() const;
 };
 
-/// Somebody who calls methods by their names, "PatientService/GetPatient" for "/lipofill.v1.PatientService/GetPatient".
+/// Somebody who calls methods by their names, "PatientService/GetPatient" for
+/// "/lipofill.v1.PatientService/GetPatient".
 class Caller {
  public:
   /// Without a token where it is empty.
@@ -41,7 +42,8 @@ class Caller {
   std::string token_;
 };
 
-/// The full name of a method, "/lipofill.v1.PatientService/GetPatient"; names that begin with '/' are that already.
+/// The full name of a method, "/lipofill.v1.PatientService/GetPatient"; names that begin with '/'
+/// are that already.
 std::string full_name(const std::string& method);
 
 }  // namespace lipofill::testing

@@ -11,7 +11,8 @@ using google::protobuf::UnknownFieldSet;
 
 constexpr char kReflection[] = "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo";
 
-// Fields of grpc/reflection/v1alpha/reflection.proto, of which gRPC's packages have no generated code.
+// Fields of grpc/reflection/v1alpha/reflection.proto, of which gRPC's packages have no generated
+// code.
 constexpr int kFileContainingSymbol = 4;
 constexpr int kListServices = 7;
 constexpr int kFileDescriptorResponse = 4;

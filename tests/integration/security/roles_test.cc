@@ -1,5 +1,5 @@
-// The whole API, as the daemon itself tells it by reflection, called by everybody there is. A method that nobody has
-// thought of here, or that has no rule in the daemon, fails.
+// The whole API, as the daemon itself tells it by reflection, called by everybody there is. A
+// method that nobody has thought of here, or that has no rule in the daemon, fails.
 
 #include "tests/integration/security/reflected_api.h"
 #include "tests/integration/security/secure_fixture.h"

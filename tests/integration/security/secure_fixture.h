@@ -42,7 +42,8 @@ class SecureTest : public ::testing::Test {
   std::shared_ptr<grpc::Channel> channel_;
 };
 
-/// Makes a patient with a scan, a model, a simulation and a checkpoint; all names begin with the tenant's.
+/// Makes a patient with a scan, a model, a simulation and a checkpoint; all names begin with the
+/// tenant's.
 class Possessions {
  public:
   explicit Possessions(const Caller& owner, const std::string& tenant);

@@ -1,4 +1,5 @@
-// Two tenants on one daemon: what is the other's is, on every method there is, exactly as what is not there.
+// Two tenants on one daemon: what is the other's is, on every method there is, exactly as what is
+// not there.
 
 #include <google/protobuf/util/message_differencer.h>
 

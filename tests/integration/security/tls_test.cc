@@ -1,4 +1,5 @@
-// TLS, mutual TLS and client certificates, made with openssl by deploy/make_certificates as anybody would.
+// TLS, mutual TLS and client certificates, made with openssl by deploy/make_certificates as anybody
+// would.
 
 #include <fstream>
 #include <thread>
@@ -44,8 +45,8 @@ class TlsTest : public SecureTest {
   }
   std::string address() const { return "localhost:" + daemon_->address().substr(daemon_->address().find(':') + 1); }
 
-  /// Somebody who shows this client's certificate (none where empty), from the folder, and trusts the authority in
-  /// `ca`.
+  /// Somebody who shows this client's certificate (none where empty), from the folder, and trusts
+  /// the authority in `ca`.
   Caller client(const std::string& name, const std::string& token = "", const std::string& ca = "secrets/ca.pem",
                 const std::string& folder = "secrets/") {
     grpc::SslCredentialsOptions options{read_whole_file(directory_.file(ca)), "", ""};

@@ -1,4 +1,5 @@
-// Bad input of every kind: each gets an error that names the field, the daemon goes on, and nothing half-made stays.
+// Bad input of every kind: each gets an error that names the field, the daemon goes on, and nothing
+// half-made stays.
 
 #include <limits>
 

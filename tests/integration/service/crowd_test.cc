@@ -1,4 +1,5 @@
-// Fifty viewers of one simulation - reading, slow, stalled, killed, frozen - and the simulation does not notice.
+// Fifty viewers of one simulation - reading, slow, stalled, killed, frozen - and the simulation
+// does not notice.
 
 #include <signal.h>
 
@@ -23,7 +24,8 @@ class CrowdTest : public ServiceTest {
   CrowdTest() : ServiceTest({"--keepalive-s", "1", "--keepalive-timeout-s", "4"}) {
     create_patient();
     v1::ModelSpec spec = square_spec();
-    // Frames of 75 kB from cheap steps: a skin that nothing moves, over a film with a wall of its own.
+    // Frames of 75 kB from cheap steps: a skin that nothing moves, over a film with a wall of its
+    // own.
     spec.clear_layers();
     spec.set_n_xi(60);
     spec.set_n_eta(60);

@@ -11,8 +11,8 @@ namespace lipofill::testing {
 /// A lipofilld of the test's own, on a free port of 127.0.0.1.
 class DaemonProcess {
  public:
-  /// Starts it, with two workers unless the arguments say otherwise, and waits until it serves; aborts the test
-  /// program's current test with a message when it does not.
+  /// Starts it, with two workers unless the arguments say otherwise, and waits until it serves;
+  /// aborts the test program's current test with a message when it does not.
   DaemonProcess(const std::string& data, const std::vector<std::string>& arguments = {});
   /// Kills it when it still runs.
   ~DaemonProcess();

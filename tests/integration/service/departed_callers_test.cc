@@ -1,4 +1,5 @@
-// Calls whose caller has left end early, and those that wait are not begun: nobody computes for nobody.
+// Calls whose caller has left end early, and those that wait are not begun: nobody computes for
+// nobody.
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,5 @@
-// SIGTERM: what health, callers, viewers and the service manager see, in which order, and that it ends.
+// SIGTERM: what health, callers, viewers and the service manager see, in which order, and that it
+// ends.
 
 #include <cstdlib>
 #include <regex>
@@ -15,7 +16,8 @@ using Health = grpc::health::v1::Health;
 using grpc::health::v1::HealthCheckRequest;
 using grpc::health::v1::HealthCheckResponse;
 
-/// A client that waits for nothing does not read from its connections either: what is stalled here is frozen.
+/// A client that waits for nothing does not read from its connections either: what is stalled here
+/// is frozen.
 [[maybe_unused]] const bool kNeverPolls = ::setenv("GRPC_CLIENT_CHANNEL_BACKUP_POLL_INTERVAL_MS", "0", 1) == 0;
 
 /// Systemd's place, taken before the daemon starts.

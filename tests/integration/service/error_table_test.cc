@@ -1,4 +1,5 @@
-// What every call of the API answers to a request that is wrong: a table, and a check that no call is missing in it.
+// What every call of the API answers to a request that is wrong: a table, and a check that no call
+// is missing in it.
 
 #include <google/protobuf/util/json_util.h>
 
@@ -12,7 +13,8 @@ namespace {
 using grpc::StatusCode;
 using Fields = std::vector<std::string>;
 
-/// A request in JSON and what it is answered: the code, the reason of the ErrorInfo, and the fields of the BadRequest.
+/// A request in JSON and what it is answered: the code, the reason of the ErrorInfo, and the fields
+/// of the BadRequest.
 struct Row {
   std::string method;
   std::string request;
@@ -33,7 +35,8 @@ Row early(std::string method, std::string request) {
   return {std::move(method), std::move(request), StatusCode::FAILED_PRECONDITION, "FAILED_PRECONDITION", {}};
 }
 
-/// patients/anna has a scan that is not complete and a model; simulations/x is READY, simulations/y has ended.
+/// patients/anna has a scan that is not complete and a model; simulations/x is READY, simulations/y
+/// has ended.
 std::vector<Row> patient_rows() {
   const std::string patients = "PatientService/";
   return {

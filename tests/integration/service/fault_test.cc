@@ -1,4 +1,5 @@
-// What the daemon does when its data directory is full, read-only or damaged: it says so, and the rest goes on.
+// What the daemon does when its data directory is full, read-only or damaged: it says so, and the
+// rest goes on.
 
 #include <sys/resource.h>
 #include <sys/stat.h>

@@ -1,4 +1,5 @@
-// Hundreds of short simulations from several clients at once on two workers: nothing hangs, nothing is left behind.
+// Hundreds of short simulations from several clients at once on two workers: nothing hangs, nothing
+// is left behind.
 
 #include <algorithm>
 #include <cstdlib>

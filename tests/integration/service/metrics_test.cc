@@ -1,4 +1,5 @@
-// What Prometheus scrapes from the real daemon, and whether the dashboard asks for anything that is not there.
+// What Prometheus scrapes from the real daemon, and whether the dashboard asks for anything that is
+// not there.
 
 #include <httplib.h>
 

@@ -1,4 +1,5 @@
-// Simulations that nobody asks for are kept on disk alone, and come back when somebody does, as if they had never left.
+// Simulations that nobody asks for are kept on disk alone, and come back when somebody does, as if
+// they had never left.
 
 #include <random>
 #include <thread>
@@ -23,8 +24,8 @@ class ParkingTest : public RunTest {
     EXPECT_TRUE(simulation.parked()) << name;
     return simulation;
   }
-  /// Paused at some step of a run of `end_s`, which is so far away that it does not end before, however late the pause
-  /// comes.
+  /// Paused at some step of a run of `end_s`, which is so far away that it does not end before,
+  /// however late the pause comes.
   v1::Simulation pause_on_the_way(const std::string& id, double end_s = 1e5) {
     v1::SimulationSpec plan = square_plan(model_.name(), end_s);
     plan.set_pace(v1::REAL_TIME);

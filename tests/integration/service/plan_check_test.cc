@@ -1,4 +1,5 @@
-// A plan that is only looked at: where its zones are and what is wrong with it, and nothing is made.
+// A plan that is only looked at: where its zones are and what is wrong with it, and nothing is
+// made.
 
 #include <cstring>
 

@@ -1,4 +1,5 @@
-// What was answered is there after the end of the daemon, however that came; checkpoints on command; going back.
+// What was answered is there after the end of the daemon, however that came; checkpoints on
+// command; going back.
 
 #include <filesystem>
 #include <fstream>

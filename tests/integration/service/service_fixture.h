@@ -43,8 +43,8 @@ std::map<std::string, uint64_t> read_mesh_rows(grpc::ClientReader<v1::MeshSlice>
 
 /// What a viewer put together from the slices of one frame.
 struct SeenFrame {
-  v1::FrameSlice slice;                          ///< of the last slice, without its arrays
-  std::map<std::string, std::string> bytes;      ///< by name of the array
+  v1::FrameSlice slice;                          ///< is the last slice, without its arrays
+  std::map<std::string, std::string> bytes;      ///< an array's name has its bytes
   std::map<std::string, v1::ArraySlice> arrays;  ///< what else is told of them
   uint64_t skipped = 0;
 };
@@ -98,7 +98,8 @@ class ServiceTest : public ::testing::Test {
   /// Polls until it has ended.
   v1::Simulation await_end(const std::string& name);
   bool is_serving();
-  /// Calls a method, whether it streams or not, with one message of these bytes; for calls that are to fail.
+  /// Calls a method, whether it streams or not, with one message of these bytes; for calls that are
+  /// to fail.
   grpc::Status call_raw(const std::string& method, const std::string& bytes);
   /// Everything the store lists, as text.
   std::string store_content();

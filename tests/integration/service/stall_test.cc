@@ -22,7 +22,8 @@ class StallTest : public ServiceTest {
     use_skin_of(200);
   }
 
-  /// Large frames from cheap steps: a fine skin that nothing moves, over a film with a wall of its own.
+  /// Large frames from cheap steps: a fine skin that nothing moves, over a film with a wall of its
+  /// own.
   void use_skin_of(uint32_t divisions) {
     v1::ModelSpec spec = square_spec();
     spec.clear_layers();

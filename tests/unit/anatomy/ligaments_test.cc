@@ -15,7 +15,8 @@ using ::testing::HasSubstr;
 
 constexpr double kMm = 1e-3;
 
-/// A flat face, x to the left, y up: menton 20 mm from the left side of a plate of 200 mm, gonion straight beside it.
+/// A flat face, x to the left, y up: menton 20 mm from the left side of a plate of 200 mm, gonion
+/// straight beside it.
 geometry::FaceGeometry make_flat_face() {
   geometry::FaceGeometrySpec spec;
   spec.region = geometry::SquareSpec{0.2, 0.2};
@@ -52,7 +53,8 @@ TEST(Ligaments, TheBorderOfTheMandibleIsAParabola) {
   face.landmarks["gonion_left"] = {0.12, 0.12, 0.0};
   const auto placed = place_ligament(face, "mandibular_osteocutaneous_left");
   ASSERT_TRUE(placed.ok());
-  // y = x^2 / a with a = 100 mm: an arc of s mm ends at x with s = x/2 sqrt(1 + 4 x^2/a^2) + a/4 asinh(2 x/a).
+  // y = x^2 / a with a = 100 mm: an arc of s mm ends at x with s = x/2 sqrt(1 + 4 x^2/a^2) + a/4
+  // asinh(2 x/a).
   const double x = placed->points[0].xi * 200.0 - 20.0;
   const double y = placed->points[0].eta * 200.0 - 20.0 - 9.1;
   EXPECT_NEAR(y, x * x / 100.0, 0.1);

@@ -13,14 +13,16 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A flat cheek of 200 mm; the masseter's middle at (100, 100), its long axis upwards; no buccal region nearby.
+/// A flat cheek of 200 mm; the masseter's middle at (100, 100), its long axis upwards; no buccal
+/// region nearby.
 geometry::FaceGeometry make_flat_cheek() {
   geometry::FaceGeometrySpec spec;
   spec.region = geometry::SquareSpec{0.2, 0.2};
   spec.n_xi = spec.n_eta = 100;
   auto face = geometry::build_face_geometry(spec, nullptr);
   EXPECT_TRUE(face.ok());
-  // Weights of the masseter: zygion 0.5, gonion 0.4, cheilion 0.1; of the middle of the buccal region: cheilion 0.58.
+  // Weights of the masseter: zygion 0.5, gonion 0.4, cheilion 0.1; of the middle of the buccal
+  // region: cheilion 0.58.
   face->landmarks = {
       {"zygion_left", {0.12, 0.14, 0.0}}, {"gonion_left", {0.12, 0.06, 0.0}}, {"cheilion_left", {-0.08, 0.06, 0.0}}};
   return *std::move(face);

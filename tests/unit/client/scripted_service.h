@@ -14,10 +14,12 @@
 
 namespace lipofill::client {
 
-/// A watch service whose streams break where a test wants them to: the real daemon's do so too rarely to test with.
+/// A watch service whose streams break where a test wants them to: the real daemon's do so too
+/// rarely to test with.
 class BreakingFrameService : public v1::FrameService::Service {
  public:
-  /// Serves one stream: what it is asked, and how to answer. The last one serves all further streams.
+  /// Serves one stream: what it is asked, and how to answer. The last one serves all further
+  /// streams.
   using Stream = std::function<grpc::Status(const v1::WatchRequest&, grpc::ServerWriter<v1::WatchResponse>*)>;
   std::vector<Stream> streams;
   std::vector<v1::WatchRequest> requests;

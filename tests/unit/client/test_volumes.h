@@ -11,8 +11,8 @@
 
 namespace lipofill::client {
 
-/// A ball of soft tissue (0 HU) in air (-1000 HU) on a grid, its edge linear over two voxel widths so that its surface
-/// at -500 lies where it should.
+/// A ball of soft tissue (0 HU) in air (-1000 HU) on a grid, its edge linear over two voxel widths
+/// so that its surface at -500 lies where it should.
 struct BallVolume {
   std::array<int, 3> size{40, 36, 32};
   std::array<double, 3> spacing{1.0, 1.25, 1.5};

@@ -24,7 +24,8 @@ class VolumeTest : public TemporaryFolderTest {
     return options;
   }
 
-  /// Extracts the ball and compares with the sphere it is: radius and centre everywhere, volume with its sign.
+  /// Extracts the ball and compares with the sphere it is: radius and centre everywhere, volume
+  /// with its sign.
   void expect_ball(const std::string& name, const std::string& bytes, const std::array<double, 3>& centre) {
     const auto skin = extract_skin(write(name, bytes), folder_ / "skin.ply", at_500());
     ASSERT_TRUE(skin.ok()) << skin.status();
@@ -34,8 +35,8 @@ class VolumeTest : public TemporaryFolderTest {
     reader->Update();
     vtkPolyData* surface = reader->GetOutput();
     ASSERT_GT(surface->GetNumberOfPoints(), 500);
-    // Linear interpolation of a distance along an edge of length s errs by s^2 / (8 R) = 0.020 mm; half a HU is 0.002
-    // mm.
+    // Linear interpolation of a distance along an edge of length s errs by s^2 / (8 R) = 0.020 mm;
+    // half a HU is 0.002 mm.
     constexpr double kBound = 0.023;
     for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i) {
       const double* p = surface->GetPoint(i);

@@ -10,7 +10,8 @@ namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// A stiffness like that of a plate on springs, scaled as tissue in SI is, and a B whose entries are areas.
+/// A stiffness like that of a plate on springs, scaled as tissue in SI is, and a B whose entries
+/// are areas.
 struct Case {
   Sparse s_lower;
   Sparse b;
@@ -46,7 +47,7 @@ struct Case {
   Eigen::MatrixXd compliance() const { return b_dense * s_dense.llt().solve(b_dense.transpose()); }
 };
 
-constexpr double kBound[] = {2e-5, 1e-12};  ///< of float32 and float64
+constexpr double kBound[] = {2e-5, 1e-12};  ///< float32 and float64 keep to these
 const Precision kPrecisions[] = {Precision::kSingle, Precision::kDouble};
 
 double bound_of(Precision precision) {
@@ -153,7 +154,8 @@ TEST(CoupledFactor, NeedsFloat64WhereFloat32HasNoPivot) {
 }
 
 TEST(CoupledFactor, KnowsItsMemoryBeforeItFactors) {
-  // At most the whole triangle twice over (supernodes are padded), at least the triangle of S itself.
+  // At most the whole triangle twice over (supernodes are padded), at least the triangle of S
+  // itself.
   const Case c(12, 9, 1.0, 1.0, 6);
   const auto analysis = *FactorAnalysis::create(c.s_lower, c.b);
   const auto n = static_cast<double>(c.s_dense.rows() + 9);

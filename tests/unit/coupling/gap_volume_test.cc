@@ -60,8 +60,8 @@ TEST(GapVolume, LiftedWallHoldsAreaTimesHeight) {
 }
 
 TEST(GapVolume, ShellBetweenSphereCapsHasTheClosedForm) {
-  // Walls of radius r and r + d over the same solid angle: volume (R2^3 - R1^3)/3 * solid angle; second order in the
-  // mesh.
+  // Walls of radius r and r + d over the same solid angle: volume (R2^3 - R1^3)/3 * solid angle;
+  // second order in the mesh.
   const double inner = 0.05;
   const double outer = 0.054;
   const double half_angle = 0.4;
@@ -125,7 +125,8 @@ TEST(GapVolume, VolumeAloneHasTheSameBits) {
   EXPECT_EQ(alone.derivative().norm(), 0.0);
 }
 
-/// A cell whose walls are bonded at every node gives way to nothing, to the last bit: that is how it is found.
+/// A cell whose walls are bonded at every node gives way to nothing, to the last bit: that is how
+/// it is found.
 TEST(GapVolume, BondedWallsCannotPart) {
   TwoWalls walls(4, 4, 0.04, 0.04);
   walls.walls.inner = walls.walls.outer;

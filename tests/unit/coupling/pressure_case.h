@@ -14,7 +14,8 @@
 
 namespace lipofill::coupling {
 
-/// A film of 2 mm cells, wet in its middle and dry elsewhere, on walls like tissue: each cell moves its neighbours.
+/// A film of 2 mm cells, wet in its middle and dry elsewhere, on walls like tissue: each cell moves
+/// its neighbours.
 struct PressureCase {
   int side;
   int n = side * side;

@@ -135,7 +135,8 @@ TEST(CalculixDeck, ElementsHaveAPositiveJacobianInTheOrderWritten) {
       ASSERT_EQ(line.size(), 9u);
       solid::HexNodes corners;
       for (int a = 0; a < 8; ++a) corners.col(a) = nodes.at(std::stoi(line[a + 1]));
-      // Nodes 1-4 lie deeper than 5-8: the faces under the film's pressure are the first and the second.
+      // Nodes 1-4 lie deeper than 5-8: the faces under the film's pressure are the first and the
+      // second.
       for (int a = 0; a < 4; ++a) EXPECT_LT(corners(2, a), corners(2, a + 4));
       for (const auto& point : solid::hex_gauss_points()) {
         const double jacobian = solid::compute_jacobian(corners, point).determinant();
@@ -211,8 +212,8 @@ TEST(CalculixDeck, HoldsRollersAndElasticSupports) {
   EXPECT_EQ(deck.set("HELD_X").size(), 4u * 26u);
   EXPECT_EQ(deck.set("HELD_Y").size(), 4u * 26u);
   EXPECT_TRUE(deck.set("HELD_Z").empty());
-  // The springs of one direction together carry the stiffness of the whole base, 2 kPa/mm over 48 x 48 mm; along x and
-  // y those of the sides on rollers are not there.
+  // The springs of one direction together carry the stiffness of the whole base, 2 kPa/mm over
+  // 48 x 48 mm; along x and y those of the sides on rollers are not there.
   const auto elements = deck.all("*ELEMENT, TYPE=SPRING1");
   const auto springs = deck.all("*SPRING, ELSET");
   ASSERT_EQ(elements.size(), springs.size());
@@ -324,7 +325,8 @@ TEST(WallPressure, IsThatOfTheCellsByTheShareTheyCover) {
   tissue.n_eta = 2;
   // Two cells over three quarters of the width: borders at 0, 0.375, 0.75.
   const film::FilmGrid film = film::make_film_grid({0.0, 0.75, 0.0, 1.0}, 2, 1, {0, 0});
-  const auto walls = exporting::spread_over_wall(tissue, film::cut_cells(film, tissue.n_xi, tissue.n_eta), Eigen::Vector2d(100.0, 300.0));
+  const auto walls = exporting::spread_over_wall(tissue, film::cut_cells(film, tissue.n_xi, tissue.n_eta),
+                                                 Eigen::Vector2d(100.0, 300.0));
   ASSERT_EQ(walls.size(), 6u);
   const std::array<double, 3> expected = {100.0, 200.0, 300.0};
   for (size_t k = 0; k < walls.size(); ++k) {

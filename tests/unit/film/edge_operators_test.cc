@@ -73,8 +73,8 @@ TEST(PressureOperatorTest, GradientAndOutflowAreAdjoint) {
   EXPECT_NEAR(compute_edge_difference(grid, p).dot(flux), -p.dot(compute_outflow(grid, flux)), 1e-13);
 }
 
-/// A plane skewed and stretched, x = xi + eta/2 + xi^2/10, y = eta, and the harmonic p = exp(x) sin(y): the outflow of
-/// inner cells is zero.
+/// A plane skewed and stretched, x = xi + eta/2 + xi^2/10, y = eta, and the harmonic p = exp(x)
+/// sin(y): the outflow of inner cells is zero.
 double flux_error_on_skewed_plane(int n) {
   const FilmGrid grid = full_grid(n, n);
   const Map shear = [](double xi, double eta) { return Eigen::Vector3d(xi + 0.5 * eta + 0.1 * xi * xi, eta, 0.0); };

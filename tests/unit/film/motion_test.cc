@@ -54,7 +54,8 @@ double decay(int n, int steps, double friction_thickness) {
   return u.norm() / before;
 }
 
-// verification.md case 4: velocity 0.980199 of the start; with wall drag 12 nu/h^2, h = 1: 0.869358.
+// verification.md case 4: velocity 0.980199 of the start; with wall drag 12 nu/h^2, h = 1:
+// 0.869358.
 TEST(TaylorGreen, DecaysAtTheViscousRate) {
   EXPECT_NEAR(decay(32, 40, 0.0), 0.980199, 5e-5);
   EXPECT_NEAR(decay(16, 400, 1.0), 0.869358, 3e-4);
@@ -95,8 +96,8 @@ Eigen::MatrixXd make_mass(const Box& box, const Eigen::VectorXd& w) {
   return mass;
 }
 
-/// D^T (h/a) D + M(1) K^T (h/a_v) K M(1) for one thickness h, out of the closed forms of one square cell: its sides sum
-/// to the outflow, those around a vertex to the circulation.
+/// D^T (h/a) D + M(1) K^T (h/a_v) K M(1) for one thickness h, out of the closed forms of one square
+/// cell: its sides sum to the outflow, those around a vertex to the circulation.
 Eigen::MatrixXd make_diffusion(const Box& box, double h) {
   const int n = box.grid.n_xi;
   const double area = box.metric.area[0];
@@ -116,7 +117,8 @@ Eigen::MatrixXd make_diffusion(const Box& box, double h) {
   return h / area * (outflow.transpose() * outflow + curl.transpose() * curl);
 }
 
-/// The system of the docstring solved by a dense factorisation, with and without friction, short and long steps.
+/// The system of the docstring solved by a dense factorisation, with and without friction, short
+/// and long steps.
 TEST(Viscosity, SolvesTheSystemOfItsDocstring) {
   const Box box(7, 0.02);
   const double h = 1e-3;
@@ -163,7 +165,8 @@ TEST(Advection, AVelocityBeyondAllMeasureIsNotCarried) {
 }
 
 TEST(Advection, CarriesAPatternDownstream) {
-  // A shear layer v(x) carried by a uniform u: v'(x) = v(x - u dt), to second order of interpolation.
+  // A shear layer v(x) carried by a uniform u: v'(x) = v(x - u dt), to second order of
+  // interpolation.
   const auto error = [](int n) {
     const Box box(n, 1.0);
     const double width = 1.0 / n;

@@ -22,8 +22,8 @@ Fat herschel_bulkley(double consistency, double n, double yield_stress) {
   return fat;
 }
 
-/// Flux per width by integrating the velocity profile across half the gap: du/dz = ((tau - tau_y)/K)^(1/n),
-/// tau = G z.
+/// Flux per width by integrating the velocity profile across half the gap:
+/// du/dz = ((tau - tau_y)/K)^(1/n), tau = G z.
 double integrate_profile(const Fat& fat, double h, double gradient) {
   const int n = 200000;
   double flux = 0.0;

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kDiffusion = 3e-5;  // [m2]
 
-/// A film of 6 x 5 slots on a sheared and bent surface, with a hole of one cell and weights that vary.
+/// A film of 6 x 5 slots on a sheared and bent surface, with a hole of one cell and weights that
+/// vary.
 struct Case {
   FilmGrid grid;
   FilmMetric metric;
@@ -84,8 +85,8 @@ Eigen::MatrixXd make_compression(const Case& film) {
   return D.transpose() * scale.asDiagonal() * D;
 }
 
-/// K^T (s h/a_v) K: around each vertex of four cells whose edges are open, with a quarter of each cell, the quadrant that
-/// touches the vertex.
+/// K^T (s h/a_v) K: around each vertex of four cells whose edges are open, with a quarter of each
+/// cell, the quadrant that touches the vertex.
 Eigen::MatrixXd make_circulation(const Case& film, int& n_vertices) {
   const FilmGrid& grid = film.grid;
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(grid.n_edges(), grid.n_edges());

@@ -70,8 +70,8 @@ TEST(OuterSkin, KnowsInsideFromOutside) {
   }
 }
 
-/// Largest departure from a similarity over the triangles: 0 for a conformal map, (s1 - s2) / (s1 + s2) of the singular
-/// values.
+/// Largest departure from a similarity over the triangles: 0 for a conformal map,
+/// (s1 - s2) / (s1 + s2) of the singular values.
 double largest_distortion(const SurfaceMesh& mesh, const Eigen::Matrix2Xd& flat) {
   double largest = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {

@@ -17,7 +17,8 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// The face shipped with the project and its landmarks, with those of the right side mirrored from the left.
+/// The face shipped with the project and its landmarks, with those of the right side mirrored from
+/// the left.
 class LandmarkChecks : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -121,8 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Face{"james", kReal, "james_face.obj", "james_face.landmarks.json", "landmarks"}),
     [](const auto& test) { return std::string(test.param.name); });
 
-/// The mouth bag of lps_head lies 20 mm under the cheek; lps_patient_target is the same face without it, at most 0.75
-/// mm away.
+/// The mouth bag of lps_head lies 20 mm under the cheek; lps_patient_target is the same face
+/// without it, at most 0.75 mm away.
 class MouthBag : public ::testing::Test {
  protected:
   void SetUp() override {

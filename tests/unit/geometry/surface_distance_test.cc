@@ -23,8 +23,8 @@ TEST(SurfaceDistance, IsSignedByTheSideOfAPlane) {
 }
 
 TEST(SurfaceDistance, IsSignedRightlyBesideSharpEdges) {
-  // Two plates at a sharp ridge: a point outside, over the ridge, is nearest to the edge, in front of one plate and
-  // behind the other.
+  // Two plates at a sharp ridge: a point outside, over the ridge, is nearest to the edge, in front
+  // of one plate and behind the other.
   SurfaceMesh ridge;
   ridge.points.resize(3, 4);
   ridge.points << 0, 0, 0.02, -0.02, -0.05, 0.05, 0, 0, 0, 0, -0.1, -0.1;

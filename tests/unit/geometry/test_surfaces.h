@@ -11,7 +11,8 @@
 
 namespace lipofill::geometry {
 
-/// A surface of n x m quadrilaterals, each cut in two, over parameters u, v in [0, 1]; u x v points outwards.
+/// A surface of n x m quadrilaterals, each cut in two, over parameters u, v in [0, 1]; u x v points
+/// outwards.
 inline SurfaceMesh make_sheet(int n, int m, const std::function<Eigen::Vector3d(double, double)>& position) {
   SurfaceMesh mesh;
   mesh.points.resize(3, (n + 1) * (m + 1));
@@ -27,7 +28,8 @@ inline SurfaceMesh make_sheet(int n, int m, const std::function<Eigen::Vector3d(
   return mesh;
 }
 
-/// A piece of a sphere about the origin, around +x: longitude and latitude in [-width / 2, width / 2].
+/// A piece of a sphere about the origin, around +x: longitude and latitude in [-width / 2,
+/// width / 2].
 inline SurfaceMesh make_sphere_cap(double radius, double width, int n) {
   return make_sheet(n, n, [=](double u, double v) {
     const double longitude = (u - 0.5) * width;

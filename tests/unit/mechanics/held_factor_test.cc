@@ -1,4 +1,5 @@
-// The factor that iterations go on with: exact where it was made, known to be late elsewhere, the same when taken up.
+// The factor that iterations go on with: exact where it was made, known to be late elsewhere, the
+// same when taken up.
 
 #include "core/mechanics/held_factor.h"
 

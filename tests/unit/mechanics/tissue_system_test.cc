@@ -1,4 +1,5 @@
-// The tissue and its gaps as functions of positions: derivatives against differences, and nothing stale.
+// The tissue and its gaps as functions of positions: derivatives against differences, and nothing
+// stale.
 
 #include "core/mechanics/tissue_system.h"
 

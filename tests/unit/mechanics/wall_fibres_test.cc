@@ -1,4 +1,5 @@
-// The springs that join the walls of films: where they sit, between which nodes, and how stiff they are.
+// The springs that join the walls of films: where they sit, between which nodes, and how stiff they
+// are.
 
 #include "core/mechanics/wall_fibres.h"
 
@@ -17,7 +18,8 @@ namespace {
 using geometry::ChartPoint;
 using ::testing::HasSubstr;
 
-/// The small model with a film under the skin and one under the muscle, over the first two thirds of the chart.
+/// The small model with a film under the skin and one under the muscle, over the first two thirds
+/// of the chart.
 struct Case {
   std::shared_ptr<const model::FaceModel> model = [] {
     model::FaceModelSpec spec = simulation::make_small_model_spec();
@@ -107,8 +109,8 @@ TEST(WallFibres, ALigamentAcrossTwoFilmsJoinsTheOutermostWithTheInnermost) {
   EXPECT_EQ(fibres->ligaments[1].breaking_force, std::numeric_limits<double>::infinity()) << "it holds";
 }
 
-/// One spring a doubled node, k times the node's share of the area. The tissue is parted at the nodes of columns 0 to 7:
-/// seven and a half quadrilaterals of 4 mm, by 48 mm.
+/// One spring a doubled node, k times the node's share of the area. The tissue is parted at the
+/// nodes of columns 0 to 7: seven and a half quadrilaterals of 4 mm, by 48 mm.
 TEST(WallFibres, ConnectiveTissueIsSpreadByArea) {
   constexpr double kStiffness = 3e6;  // [Pa/m]
   const Case c(kStiffness);

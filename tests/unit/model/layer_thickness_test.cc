@@ -26,7 +26,8 @@ Eigen::Vector3d on_sphere(double longitude, double latitude) {
                                    std::sin(latitude));
 }
 
-/// A head that is a sphere, its skull another, not about the same middle: 1.8 mm of skin, and muscle down to the bone.
+/// A head that is a sphere, its skull another, not about the same middle: 1.8 mm of skin, and
+/// muscle down to the bone.
 model::FaceModelSpec make_spherical_head() {
   geometry::ScanRegionSpec region;
   region.scan = geometry::make_sphere(kRadius, 60);

@@ -1,5 +1,5 @@
-// A model that goes around its zones, on the face shipped with the project and on faces made of it: stretched,
-// mirrored, cut off and made rough.
+// A model that goes around its zones, on the face shipped with the project and on faces made of it:
+// stretched, mirrored, cut off and made rough.
 
 #include "core/model/region_footprints.h"
 

@@ -17,8 +17,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
 
-/// 6 x 4 slots over the square of 48 mm, so that a slot is 8 mm wide along xi and 12 mm along eta; rows 0 and 1 are zone
-/// 0, the others zone 1.
+/// 6 x 4 slots over the square of 48 mm, so that a slot is 8 mm wide along xi and 12 mm along eta;
+/// rows 0 and 1 are zone 0, the others zone 1.
 struct Case {
   std::shared_ptr<const model::FaceModel> model = simulation::make_small_model();
   FilmSpec spec = simulation::make_small_plan().films[0];
@@ -111,8 +111,8 @@ TEST(FilmWalls, SlotsWithoutACellAreNotParted) {
   EXPECT_THAT(c.place().inside_zones, ElementsAre(Pair(2, 3), Pair(14, 15)));
 }
 
-/// Conductance is leakage times the length of the side between the cells: 12 mm between neighbours along xi, 8 mm along
-/// eta.
+/// Conductance is leakage times the length of the side between the cells: 12 mm between neighbours
+/// along xi, 8 mm along eta.
 TEST(FilmWalls, WhatSeepsGoesWithTheLengthOfTheSide) {
   Case c;
   c.add_path({ChartPoint{0.5, 0.0}, ChartPoint{0.5, 1.0}}, 3e-9);

@@ -83,8 +83,8 @@ TEST(InjectionSchedule, QueuesWhatHasNoStart) {
   EXPECT_EQ(c.schedule.next_change(time), std::numeric_limits<double>::infinity());
 }
 
-/// The zone of four columns has 2 x 4 cells off its edge, which share evenly; the one of two columns has none, so all
-/// its cells share.
+/// The zone of four columns has 2 x 4 cells off its edge, which share evenly; the one of two
+/// columns has none, so all its cells share.
 TEST(InjectionSchedule, SpreadsOverTheInsideOfAZone) {
   Case c;
   c.add({"wide", 0.8 * kMillilitre, 1.0 * kMillilitre, 0.0, std::nullopt});

@@ -64,7 +64,8 @@ TEST(ZoneBond, AnAttachmentAddsUpToItsIntegral) {
   EXPECT_TRUE(bond.open[c.place(4, 12)]) << "4 mm outside";
   EXPECT_FALSE(bond.open[c.place(3, 12)]) << "6 mm outside";
   EXPECT_EQ(bond.stiffness[c.place(12, 12)], 0.0) << "inside";
-  // Along a row of 2 mm: k1/w int x dx from 0 to 6 mm less what goes to the place at 6 mm, which is bonded.
+  // Along a row of 2 mm: k1/w int x dx from 0 to 6 mm less what goes to the place at 6 mm, which is
+  // bonded.
   double row = 0.0;
   for (int i = 0; i <= 6; ++i) row += bond.stiffness[c.place(i, 12)];
   const double k_over_w = 2e7 / 6e-3;

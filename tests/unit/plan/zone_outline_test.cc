@@ -12,7 +12,8 @@
 namespace lipofill::plan {
 namespace {
 
-/// A grid over the unit square; rows from the far side, "." no cell, "a" the first zone, "b" the second.
+/// A grid over the unit square; rows from the far side, "." no cell, "a" the first zone, "b" the
+/// second.
 film::FilmGrid draw_grid(const std::vector<std::string>& rows) {
   const int n_eta = static_cast<int>(rows.size());
   const int n_xi = static_cast<int>(rows[0].size());

@@ -12,7 +12,7 @@ namespace lipofill::simulation {
 namespace {
 
 struct Outcome {
-  double thickness = 0.0;  ///< at the probe when half the injection has spread [m]
+  double thickness = 0.0;  ///< the probe shows it when half the injection has spread [m]
   StepReport report;
 };
 

@@ -2,8 +2,9 @@
 
 namespace lipofill::testing {
 
-/// Blocks that the calling thread has taken from the heap so far, by malloc and its kin or by operator new, in this
-/// program and in the libraries it calls. Linking allocation_counter.cc into a program is what counts them.
+/// Blocks that the calling thread has taken from the heap so far, by malloc and its kin or by
+/// operator new, in this program and in the libraries it calls. Linking allocation_counter.cc into
+/// a program is what counts them.
 long count_allocations();
 
 /// What a call takes from the heap.

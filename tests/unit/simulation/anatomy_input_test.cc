@@ -1,5 +1,5 @@
-// What a simulation refuses of fat, ligaments, walls and connective tissue, each with the field, the value and the
-// bound.
+// What a simulation refuses of fat, ligaments, walls and connective tissue, each with the field,
+// the value and the bound.
 
 #include "tests/unit/simulation/bad_plan.h"
 

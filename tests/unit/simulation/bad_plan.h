@@ -19,7 +19,8 @@ struct BadPlan {
   std::string description;  ///< part of it: the value or the bound
 };
 
-/// Spoils the small plan and expects to be told so, by whoever makes a simulation of it and by whoever only asks.
+/// Spoils the small plan and expects to be told so, by whoever makes a simulation of it and by
+/// whoever only asks.
 class PlanIsRefused : public testing::TestWithParam<BadPlan> {};
 
 inline void expect_refused(const BadPlan& bad) {

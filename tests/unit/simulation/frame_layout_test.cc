@@ -11,7 +11,8 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// Two films of one half of the chart each and one below them, as a plan may name them: the deep one first.
+/// Two films of one half of the chart each and one below them, as a plan may name them: the deep
+/// one first.
 struct Layered {
   std::shared_ptr<const model::FaceModel> model = make_small_model();
   std::vector<plan::FilmLayout> films;

@@ -1,4 +1,5 @@
-// Nothing that a step does for every hexahedron, film cell or edge takes memory from the heap once it has run.
+// Nothing that a step does for every hexahedron, film cell or edge takes memory from the heap once
+// it has run.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +32,8 @@ TEST(AllocationCounter, SeesVectorsMatricesAndStrings) {
   EXPECT_EQ(count_allocations_of([] { Eigen::Vector3d::Ones().eval(); }), 0);
 }
 
-/// All that a step may come across: tension at rest, a ligament, connective tissue, springs below, walls that leak.
+/// All that a step may come across: tension at rest, a ligament, connective tissue, springs below,
+/// walls that leak.
 struct Everything {
   std::shared_ptr<const model::FaceModel> model;
   plan::SimulationSpec spec = make_small_plan();

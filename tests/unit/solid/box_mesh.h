@@ -55,8 +55,8 @@ inline HexMesh Box::make() const {
   return mesh;
 }
 
-/// Random displacement of the nodes, up to `amplitude` times the node spacing in each of the components asked for. The
-/// same on every machine.
+/// Random displacement of the nodes, up to `amplitude` times the node spacing in each of the
+/// components asked for. The same on every machine.
 class Jitter {
  public:
   explicit Jitter(unsigned seed) : state_(seed) {}

@@ -118,8 +118,8 @@ TEST(ElementBatch, LeastCornerIsThatOfTheEdges) {
   }
 }
 
-/// A mesh and its node numbers turned about: hexahedra then fall into several batches, some not full, and blocks are
-/// stored as they are and transposed.
+/// A mesh and its node numbers turned about: hexahedra then fall into several batches, some not
+/// full, and blocks are stored as they are and transposed.
 struct Shuffled {
   Row row;
   std::vector<ElasticMaterial> materials{{kModulus, 0.45, 1000.0}};

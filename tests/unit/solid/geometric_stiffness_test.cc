@@ -39,8 +39,8 @@ struct Bar {
   }
 };
 
-/// A linear field u = G X costs V tr(G S+ G^T) under a homogeneous stress; here uniaxial strain with lateral
-/// compression left out.
+/// A linear field u = G X costs V tr(G S+ G^T) under a homogeneous stress; here uniaxial strain
+/// with lateral compression left out.
 TEST(GeometricStiffness, CostOfALinearFieldIsThatOfTheTension) {
   const Bar bar;
   const Eigen::Vector3d stretch(1.08, 0.95, 1.0);
@@ -107,7 +107,8 @@ TEST(GeometricStiffness, IsNothingUnderCompressionOrRotation) {
   EXPECT_LT(bar.geometric_stiffness(R * bar.mesh.rest_positions).norm(), 1e-13 * scale);
 }
 
-/// Turning a stretched bar: the derivative of the force has the tension's part, which K alone leaves out.
+/// Turning a stretched bar: the derivative of the force has the tension's part, which K alone
+/// leaves out.
 TEST(GeometricStiffness, BringsTheTangentNearTheDerivative) {
   constexpr double kStatic = std::numeric_limits<double>::infinity();
   const Bar bar;

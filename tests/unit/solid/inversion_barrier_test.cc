@@ -117,7 +117,8 @@ TEST(InversionBarrier, ForceIsTheSlopeOfTheEnergy) {
   }
 }
 
-/// The whole second derivative less its negative part: never softer than the truth, equal to it where that is positive.
+/// The whole second derivative less its negative part: never softer than the truth, equal to it
+/// where that is positive.
 TEST(InversionBarrier, TangentIsPositiveAndBoundsTheTruth) {
   const Slab slab;
   for (const double share : {0.25, 0.1, -0.05}) {
@@ -157,8 +158,9 @@ TEST(InversionBarrier, TurnsWithTheTissueAndPushesOnNothingOutside) {
   EXPECT_LT(total.norm(), 1e-12 * before.force.norm());
 }
 
-/// Soft fat on bone, 20 x 20 x 3 mm, pressed in its middle by its modulus: Newton's method with the system matrix, no
-/// line search. Without the barrier the equilibrium has folded corners (scaled Jacobian -0.19).
+/// Soft fat on bone, 20 x 20 x 3 mm, pressed in its middle by its modulus: Newton's method with the
+/// system matrix, no line search. Without the barrier the equilibrium has folded corners (scaled
+/// Jacobian -0.19).
 TEST(InversionBarrier, SoftFatUnderALoadComesToRest) {
   const Box box{{8, 8, 1}, {0.02, 0.02, 0.003}};
   NodeSupports supports;

@@ -53,7 +53,8 @@ Eigen::Matrix3Xd shake(const Eigen::Matrix3Xd& x, double amplitude, unsigned see
   return shaken;
 }
 
-/// u = G X costs V/2 tr(G S0 G^T); the in-plane gradients of a lifted sheet count, those through its thickness do not.
+/// u = G X costs V/2 tr(G S0 G^T); the in-plane gradients of a lifted sheet count, those through
+/// its thickness do not.
 TEST(Prestress, EnergyOfALinearField) {
   const Sheet sheet;
   Jitter jitter(2);

@@ -1,5 +1,6 @@
-// The corotational force leaves out how the rotations change with the positions, so it is not the exact slope of the
-// energy: off by a share of the strain. The energy balance of a simulation is stated within that share.
+// The corotational force leaves out how the rotations change with the positions, so it is not the
+// exact slope of the energy: off by a share of the strain. The energy balance of a simulation is
+// stated within that share.
 
 #include <gtest/gtest.h>
 

@@ -21,7 +21,8 @@ namespace {
 constexpr double kDt = 0.01;
 constexpr double kStatic = std::numeric_limits<double>::infinity();
 
-/// A small slab of two materials, solid-shell below and two EAS-9 elements above, held in several ways.
+/// A small slab of two materials, solid-shell below and two EAS-9 elements above, held in several
+/// ways.
 struct Slab {
   Box box{{3, 2, 3}, {0.03, 0.02, 0.009}};
   std::vector<ElasticMaterial> materials = {{1e5, 0.45, 1000.0}, {2e4, 0.3, 920.0}};
@@ -159,8 +160,8 @@ TEST(Tissue, SystemMatrixAtRest) {
   EXPECT_LT((full(tissue.system_matrix()) - S).norm(), 1e-12 * S.norm());
 }
 
-/// What the step adds to the static matrix of the same deformed state is inertia and damping: M (1/dt^2 + alpha/dt) +
-/// beta/dt K.
+/// What the step adds to the static matrix of the same deformed state is inertia and damping: M
+/// (1/dt^2 + alpha/dt) + beta/dt K.
 TEST(Tissue, StepAddsInertiaAndDamping) {
   const Slab slab;
   Tissue tissue = slab.make();
@@ -182,7 +183,8 @@ TEST(Tissue, RestCostsNothing) {
   EXPECT_NEAR(tissue.min_volume_ratio(), 1.0, 1e-14);
 }
 
-/// K is the derivative of f_int at rest, and off by the strain elsewhere: turning is no reason to be off.
+/// K is the derivative of f_int at rest, and off by the strain elsewhere: turning is no reason to
+/// be off.
 TEST(Tissue, StiffnessIsTheDerivativeOfTheForceUpToStrain) {
   const Slab slab;
   Tissue tissue = slab.make();
@@ -294,7 +296,8 @@ void expect_same_bits(const Tissue& a, const Tissue& b) {
   EXPECT_EQ(a.elastic_energy(), b.elastic_energy());
 }
 
-/// Under tension and squeezed flat in places, so that every term that knows the modulus has its say.
+/// Under tension and squeezed flat in places, so that every term that knows the modulus has its
+/// say.
 TEST(Tissue, ModuliSetLaterGiveTheBitsOfATissueBuiltWithThem) {
   Slab slab;
   slab.materials[0].prestress = 300.0;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kStatic = std::numeric_limits<double>::infinity();
 
-/// Two slabs, one above the other with a gap between them, and a third that touches the second: springs across one
-/// film, across both, and where walls touch.
+/// Two slabs, one above the other with a gap between them, and a third that touches the second:
+/// springs across one film, across both, and where walls touch.
 struct Sandwich {
   Box box{{2, 2, 1}, {0.02, 0.02, 0.002}};
   HexMesh mesh;
@@ -49,7 +49,8 @@ struct Sandwich {
                point_spring(bottom(2, 2), top(1, 2), 60.0)};
   }
 
-  /// k-th node of the outer and of the inner face of a slab; `bottom(0, .)` is the outer face of the lowest.
+  /// k-th node of the outer and of the inner face of a slab; `bottom(0, .)` is the outer face of
+  /// the lowest.
   int top(int slab, int k) const { return slab * box.n_nodes() + (slab == 0 ? 0 : box.node(0, 0, 1)) + k; }
   int bottom(int slab, int k) const { return slab * box.n_nodes() + (slab == 0 ? box.node(0, 0, 1) : 0) + k; }
 

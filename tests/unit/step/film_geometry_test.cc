@@ -20,7 +20,8 @@ TEST(FilmGeometry, RestAreaIsThatOfTheCells) {
   EXPECT_EQ(geometry.metric(0).area, geometry.rest_area(0));
 }
 
-/// A linear map of the tissue maps the mid-surface alike: its area grows by the map's determinant in the plane.
+/// A linear map of the tissue maps the mid-surface alike: its area grows by the map's determinant
+/// in the plane.
 TEST(FilmGeometry, AFilmOnTissueFollowsIt) {
   SmallSystem c;
   FilmGeometry geometry(c.model->geometry.grid, c.films, c.cells, c.system.get());
@@ -50,8 +51,8 @@ TEST(FilmGeometry, TheMiddleLiesHalfWayBetweenTheWalls) {
   EXPECT_LT(moved.topRows<2>().cwiseAbs().maxCoeff(), 1e-15);
 }
 
-/// A film with walls of its own lies on the undeformed skin, which the small model has at z = 0, whatever the tissue
-/// does.
+/// A film with walls of its own lies on the undeformed skin, which the small model has at z = 0,
+/// whatever the tissue does.
 TEST(FilmGeometry, AFilmWithWallsOfItsOwnStays) {
   SmallSystem c;
   plan::FilmLayout winkler = c.films[0];

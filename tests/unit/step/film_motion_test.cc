@@ -38,7 +38,8 @@ struct FlatFilm {
   }
 };
 
-/// Between walls close to each other a flow loses its momentum to them alone: U' = U / (1 + 12 mu dt / (rho h^2)).
+/// Between walls close to each other a flow loses its momentum to them alone: U' = U / (1 + 12 mu
+/// dt / (rho h^2)).
 TEST(FilmMotion, FrictionSlowsByTheThicknessOfTheVolume) {
   FlatFilm film;
   FilmMotion motion(film.grid);
@@ -56,7 +57,8 @@ TEST(FilmMotion, FrictionSlowsByTheThicknessOfTheVolume) {
   }
 }
 
-/// Without friction and viscosity a shear flow v(x) = c x is carried along by a uniform u: v'(x) = c (x - u dt).
+/// Without friction and viscosity a shear flow v(x) = c x is carried along by a uniform u:
+/// v'(x) = c (x - u dt).
 TEST(FilmMotion, TheFlowCarriesItsVelocityAlong) {
   FlatFilm film;
   FilmMotion motion(film.grid);

@@ -1,5 +1,5 @@
-// The mobilities that pressures are preconditioned with: what they are, when they are renewed, and that taking them up
-// again gives the same bits.
+// The mobilities that pressures are preconditioned with: what they are, when they are renewed, and
+// that taking them up again gives the same bits.
 
 #include "core/step/lagged_mobility.h"
 

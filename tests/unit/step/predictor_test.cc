@@ -31,7 +31,8 @@ void accept(const Eigen::Matrix3Xd& positions, double dt, mechanics::SimulationS
   state.last_step = dt;
 }
 
-/// Largest error in steps 400 to 500, each of which leaves the share `rho` of the error it starts with; 1 in the first.
+/// Largest error in steps 400 to 500, each of which leaves the share `rho` of the error it starts
+/// with; 1 in the first.
 double error_after_many_steps(double rho) {
   mechanics::SimulationState state = at_rest();
   accept(Eigen::Matrix3Xd::Ones(3, 1), kStep, state);
@@ -64,7 +65,8 @@ TEST(StepStart, SharesAddUpToOneAndCancelASignThatAlternates) {
   EXPECT_EQ(kStartShares[0] - kStartShares[1] + kStartShares[2] - kStartShares[3], 0.0);
 }
 
-/// Shares of velocities 1, 2, 3, 4 steps back: an acceleration is followed better than by the last one, whose lag is 1.
+/// Shares of velocities 1, 2, 3, 4 steps back: an acceleration is followed better than by the last
+/// one, whose lag is 1.
 TEST(StepStart, FollowsAnAccelerationBetterThanTheLastVelocity) {
   mechanics::SimulationState state = at_rest();
   for (int step = 1; step <= 10; ++step) accept(Eigen::Matrix3Xd::Constant(3, 1, step * step), kStep, state);

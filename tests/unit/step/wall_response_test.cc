@@ -14,7 +14,8 @@ constexpr double kStiffness = 2e6;         ///< of the Winkler walls [Pa/m]
 constexpr double kCellArea = 8e-3 * 8e-3;  ///< [m2]
 constexpr double kLeastOwnShare = 1e-3;    ///< of its own compliance that a lumped cell keeps
 
-/// The tissue of the small plan, factored where it is bent; films may be added that have walls of their own.
+/// The tissue of the small plan, factored where it is bent; films may be added that have walls of
+/// their own.
 struct Case : SmallSystem {
   std::vector<plan::FilmLayout> all = films;
   mechanics::FilmCells all_cells;
@@ -108,7 +109,8 @@ TEST(WallResponse, FilmsOfBothKindsStandInOneMatrix) {
   EXPECT_EQ(*walls.compliance().dense, expected);
 }
 
-/// Too many cells for a dense C: then it is known by its products alone, and a lumped cell keeps a share of the mean.
+/// Too many cells for a dense C: then it is known by its products alone, and a lumped cell keeps a
+/// share of the mean.
 TEST(WallResponse, AFactorWithoutPressuresIsUsedByItsProducts) {
   Case c;
   const Eigen::SparseMatrix<double>& s = c.system->tissue().system_matrix();

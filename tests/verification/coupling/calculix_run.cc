@@ -45,7 +45,8 @@ std::string read_end(const std::filesystem::path& file) {
   return text.substr(text.size() > kEnd ? text.size() - kEnd : 0);
 }
 
-/// The last table of displacements in a .dat file, which must be that of the whole load: lines "node ux uy uz" [mm].
+/// The last table of displacements in a .dat file, which must be that of the whole load: lines
+/// "node ux uy uz" [mm].
 absl::StatusOr<Eigen::Matrix3Xd> read_displacements(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::vector<Eigen::Vector3d> rows;

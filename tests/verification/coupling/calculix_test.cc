@@ -1,6 +1,6 @@
-// A second opinion: CalculiX, with its own elements, finds the shape of the skin under the pressure of our settled
-// films. The deck is the one that the service exports: mesh, supports and pressure are ours; elements, constitutive law
-// and solver are theirs.
+// A second opinion: CalculiX, with its own elements, finds the shape of the skin under the pressure
+// of our settled films. The deck is the one that the service exports: mesh, supports and pressure
+// are ours; elements, constitutive law and solver are theirs.
 
 #include <Eigen/Geometry>
 #include <cstdio>
@@ -163,9 +163,10 @@ TEST_F(JawPatch, AgreesAtModerateRotation) {
   expect_agreement(title("jaw patch", *simulation, ours), ours, ask_calculix(deck_of(*simulation)), record);
 }
 
-// Where the skin stretches by several per cent the constitutive law decides, and none of ccx' is ours: linear
-// elasticity in Green-Lagrange strain stiffens under tension (P = E (e + 1.5 e^2) for a bar), neo-Hooke softens (E (e -
-// e^2)), the corotational law does neither (E e). Ours must lie between the two, and near their mean.
+// Where the skin stretches by several per cent the constitutive law decides, and none of ccx' is
+// ours: linear elasticity in Green-Lagrange strain stiffens under tension (P = E (e + 1.5 e^2) for
+// a bar), neo-Hooke softens (E (e - e^2)), the corotational law does neither (E e). Ours must lie
+// between the two, and near their mean.
 TEST_F(JawPatch, LiesBetweenTheLawsWhereTheSkinStretches) {
   Case record = second_opinion();
   const auto simulation = inflate(0.6);

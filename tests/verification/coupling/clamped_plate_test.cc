@@ -1,5 +1,5 @@
-// A film under a clamped plate at rest, through the public simulation interface: the pressure is even, and as high as
-// the injected volume makes it.
+// A film under a clamped plate at rest, through the public simulation interface: the pressure is
+// even, and as high as the injected volume makes it.
 
 #include <vector>
 
@@ -33,7 +33,7 @@ std::shared_ptr<const model::FaceModel> make_plate(double thickness, int n) {
 
 struct Inflated {
   double pressure = 0.0;    ///< [Pa]
-  double deflection = 0.0;  ///< of the middle [m]
+  double deflection = 0.0;  ///< the middle moves this far [m]
 };
 
 /// At rest, with `volume` injected below a plate of n x n elements.
@@ -101,8 +101,9 @@ TEST(InflatedPlate, SquareConvergesUnderRefinement) {
   square.record_series({"p at t/b = 1/400", "elements a side", sizes, errors, 2.0, 1.6});
 }
 
-/// The rim of a disc on a square grid is a staircase: its radius is only known to within an element. For any radius,
-/// w0 = p a^4/(64 D) and V = pi p a^6/(192 D) give a^2 = 3 V/(pi w0), and with it p without a.
+/// The rim of a disc on a square grid is a staircase: its radius is only known to within an
+/// element. For any radius, w0 = p a^4/(64 D) and V = pi p a^6/(192 D) give a^2 = 3 V/(pi w0), and
+/// with it p without a.
 TEST(InflatedPlate, DiscHasTheDeflectionAndPressureOfItsRadius) {
   Case circle({"coupled/6b-inflated-disc", "Clamped circular plate inflated by the film at rest",
                "Kirchhoff: w0 = p a^4/(64 D), V = pi p a^6/(192 D); the rim follows the grid's cells."});

@@ -1,5 +1,5 @@
-// The compliance of a real tissue: EXACT against a dense reference made without the solver, LUMPED against the row sums
-// of it.
+// The compliance of a real tissue: EXACT against a dense reference made without the solver, LUMPED
+// against the row sums of it.
 
 #include <gtest/gtest.h>
 
@@ -78,8 +78,8 @@ TEST(Compliance, LumpedRowSumsKeepTheTotalVolumeAnyPressureMoves) {
 }
 
 TEST(Compliance, DryCellsAreHeldShutByTheSmallestEigenvalue) {
-  // With film cells twice as coarse as the wall there is no checkerboard of pressure that no wall feels: without any
-  // fluid, J = 0, C alone is definite.
+  // With film cells twice as coarse as the wall there is no checkerboard of pressure that no wall
+  // feels: without any fluid, J = 0, C alone is definite.
   const TissueCase c;
   const Eigen::VectorXd eigenvalues =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(c.dense_compliance()).eigenvalues();

@@ -1,4 +1,5 @@
-// What no scheme may lose: volume, what walls hold, and the balance of forces between the film and its two walls.
+// What no scheme may lose: volume, what walls hold, and the balance of forces between the film and
+// its two walls.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +31,8 @@ std::shared_ptr<const model::FaceModel> make_two_layers() {
   return *model;
 }
 
-/// A film of two zones side by side, their common edge sealed; fat goes into the left one at a point.
+/// A film of two zones side by side, their common edge sealed; fat goes into the left one at a
+/// point.
 plan::SimulationSpec make_two_zones(plan::FilmWallKind wall) {
   plan::SimulationSpec spec;
   spec.films = {make_film(wall, 8, 8)};
@@ -135,8 +137,8 @@ TEST(Conservation, EnergyBalances) {
   energy.record_series({"energy balance", "step [s]", steps, missing, 1.0, 0.8});
 }
 
-/// Share of the pressure's forces that is left when those on both walls are added up, and of their moments about the
-/// middle.
+/// Share of the pressure's forces that is left when those on both walls are added up, and of their
+/// moments about the middle.
 struct Imbalance {
   double force = 0.0;
   double torque = 0.0;

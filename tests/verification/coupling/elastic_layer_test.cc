@@ -1,5 +1,5 @@
-// A film of rest thickness h0 between rigid bone and an elastic layer of thickness H, free on its outer face: a
-// sinusoid of wavenumber k decays at
+// A film of rest thickness h0 between rigid bone and an elastic layer of thickness H, free on its
+// outer face: a sinusoid of wavenumber k decays at
 //
 //     sigma = h0^3 k^2 S/(12 mu),   S = E k/(2 (1 - nu^2)) (sinh^2 x - x^2)/(sinh x cosh x + x),   x = k H
 

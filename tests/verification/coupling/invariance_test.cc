@@ -14,7 +14,8 @@ namespace {
 
 using Change = std::function<Eigen::Vector3d(const Eigen::Vector3d&)>;
 
-/// Displacement of the skin after 0.4 s of the plan on the scan and landmarks that `change` makes [mm] (3, n).
+/// Displacement of the skin after 0.4 s of the plan on the scan and landmarks that `change` makes
+/// [mm] (3, n).
 Eigen::Matrix3Xd run_changed(const Change& change) {
   JawPlan plan = load_jaw_plan();
   if (!plan.ok) return {};

@@ -1,4 +1,5 @@
-// Inflation far past the linear range, and back: skin that rises by several times its thickness over soft fat.
+// Inflation far past the linear range, and back: skin that rises by several times its thickness
+// over soft fat.
 
 #include <algorithm>
 #include <string>

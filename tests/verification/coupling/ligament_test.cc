@@ -15,7 +15,7 @@ using plan::LigamentSpec;
 
 constexpr double kSide = 0.024;  // [m]
 constexpr double kArea = kSide * kSide;
-constexpr int kPoints = 4;  // of a ligament
+constexpr int kPoints = 4;  // a ligament has so many
 
 /// Plates that slide up and down between rollers, stiff enough not to bend.
 std::shared_ptr<const model::FaceModel> make_plates(const std::vector<std::string>& names) {
@@ -111,7 +111,7 @@ TEST(Ligament, BreaksForGood) {
   Case record(ligament_case());
   plan::SimulationSpec spec = make_plan({"plate"}, 0.3e-6);
   spec.ligaments = {make_ligament("septum", "", "", 100.0)};
-  spec.ligaments[0].breaking_force = 100.0 * 0.3e-3;  // at an opening of 0.3 mm of 0.52
+  spec.ligaments[0].breaking_force = 100.0 * 0.3e-3;  // it breaks at 0.3 mm of the 0.52 it would open
   auto simulation = make_simulation(make_plates({"plate"}), spec);
   ASSERT_TRUE(simulation);
   double largest = 0.0;

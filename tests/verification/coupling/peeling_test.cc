@@ -1,6 +1,7 @@
-// A thin plate on a pre-wetted film, fat injected at a constant rate: the blister peels the plate off by bending
-// (Lister, Peng & Neufeld 2013). Inside, the pressure is even and the plate a clamped one; its rim is a travelling wave
-// of film and bending that takes the pre-wetted thickness h0 to the blister's curvature kappa, at the speed
+// A thin plate on a pre-wetted film, fat injected at a constant rate: the blister peels the plate
+// off by bending (Lister, Peng & Neufeld 2013). Inside, the pressure is even and the plate a
+// clamped one; its rim is a travelling wave of film and bending that takes the pre-wetted thickness
+// h0 to the blister's curvature kappa, at the speed
 //
 //     R' = D h0^(1/2) kappa^(5/2) / (12 mu c^(5/2));    H^3 H^(5) = -(H - 1), H -> 1 ahead, H'' -> c behind
 //
@@ -23,7 +24,8 @@ namespace {
 using geometry::ChartPoint;
 using geometry::ScalarField;
 
-/// The wave at the blister's rim, from x = -kBehind to kAhead, by the box scheme for (H, H', ..., H'''') and Newton.
+/// The wave at the blister's rim, from x = -kBehind to kAhead, by the box scheme for (H, H', ...,
+/// H'''') and Newton.
 class RimWave {
  public:
   RimWave() {
@@ -80,7 +82,8 @@ class RimWave {
     return factor.solve(-residual);
   }
 
-  /// Behind: H''' and H'''' as they follow from H^(5) = -1/H^2. Ahead: at rest. And where the wave is: H(0) = 2.
+  /// Behind: H''' and H'''' as they follow from H^(5) = -1/H^2. Ahead: at rest. And where the wave
+  /// is: H(0) = 2.
   void add_ends(int row, Eigen::VectorXd& residual) {
     const double H = y_[0];
     residual[row] = y_[4] + kBehind / (3.0 * H * H);
@@ -108,15 +111,15 @@ constexpr double kYoungsModulus = 1e9;
 constexpr double kNu = 0.45;
 constexpr double kViscosity = 1e-3;
 constexpr double kPrewetted = 0.0033e-3;
-/// Height of the blister at the end over the pre-wetted thickness: far above 1 for the similarity to hold, and a tenth
-/// of the plate's thickness, for bending alone.
+/// Height of the blister at the end over the pre-wetted thickness: far above 1 for the similarity
+/// to hold, and a tenth of the plate's thickness, for bending alone.
 constexpr double kHeight = 30.0;
-constexpr double kRadius = 0.06;  ///< at the end [m]
+constexpr double kRadius = 0.06;  ///< the front is there at the end [m]
 const double kBending = kYoungsModulus * std::pow(kThickness, 3) / (12.0 * (1.0 - kNu * kNu));
 
 /// R = (prefactor . D h0^(1/2) rate^(5/2)/mu)^power t^(7/2 power)
 struct FrontLaw {
-  double constant = 0.0;  ///< of the bracket
+  double constant = 0.0;  ///< the bracket of the law has it
   double power = 0.0;
   double rate = 0.0;  ///< [m3/s], or [m2/s] to one side
   double radius(double t) const {
@@ -132,7 +135,8 @@ struct FrontLaw {
   }
 };
 
-/// A part of the plate between planes of symmetry on all sides, with a film of n_x x n_y cells fed at the origin.
+/// A part of the plate between planes of symmetry on all sides, with a film of n_x x n_y cells fed
+/// at the origin.
 struct Blister {
   double length_x, length_y;
   int n_x, n_y;

@@ -1,4 +1,5 @@
-// The edge of a zone under a thin plate: where it lies between the grid's lines, and what an attachment around it gives.
+// The edge of a zone under a thin plate: where it lies between the grid's lines, and what an
+// attachment around it gives.
 
 #include <Eigen/SparseLU>
 #include <cmath>
@@ -20,7 +21,8 @@ constexpr double kD = kYoungsModulus * kThickness * kThickness * kThickness / (1
 /// Middle of the plate in units of its thickness: the linear range.
 constexpr double kLift = kThickness / 500.0;
 
-/// A plate on bone, n elements along xi and 4 along eta, whose sides move in their planes only: cylindrical bending.
+/// A plate on bone, n elements along xi and 4 along eta, whose sides move in their planes only:
+/// cylindrical bending.
 std::shared_ptr<const model::FaceModel> make_plate(int n) {
   model::FaceModelSpec spec;
   spec.region = geometry::SquareSpec{kSide, 4 * kSide / n};

@@ -1,5 +1,5 @@
-// Spreading on a Winkler wall, p = k (h - rest): the Barenblatt-Pattle solution, from its exact profile. A quarter of
-// the plane, its two straight sides sealed: symmetry.
+// Spreading on a Winkler wall, p = k (h - rest): the Barenblatt-Pattle solution, from its exact
+// profile. A quarter of the plane, its two straight sides sealed: symmetry.
 
 #include <algorithm>
 #include <vector>
@@ -44,11 +44,12 @@ ScalarField sample_profile(double side, double t) {
 
 /// The film along one side of the quarter at the end.
 struct Profile {
-  double width = 0.0;     ///< of a cell [m]
+  double width = 0.0;     ///< a cell is so wide [m]
   std::vector<double> h;  ///< [m]
 
   double r(int i) const { return width * std::hypot(i + 0.5, 0.5); }
-  /// Where the profile cubed, linear in r^2, reaches zero: from two cells, at 0.2 and at 0.75 of the radius `guess`.
+  /// Where the profile cubed, linear in r^2, reaches zero: from two cells, at 0.2 and at 0.75 of
+  /// the radius `guess`.
   double front(double guess) const {
     const int a = static_cast<int>(0.2 * guess / width);
     const int b = static_cast<int>(0.75 * guess / width);

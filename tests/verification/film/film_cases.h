@@ -47,7 +47,8 @@ struct Slot {
   int last = 14;
 };
 
-/// `spec` in a slot along which a steady flux [m2/s] runs from the first cell to the last for up to 10 s.
+/// `spec` in a slot along which a steady flux [m2/s] runs from the first cell to the last for up to
+/// 10 s.
 inline std::unique_ptr<simulation::Simulation> make_slot(plan::SimulationSpec spec, const Slot& slot, double flux) {
   const double width = 4e-3;
   const auto centre = [&](int cell) { return geometry::ChartPoint{(cell + 0.5) / slot.n, 0.5}; };

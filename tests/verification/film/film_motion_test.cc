@@ -1,4 +1,5 @@
-// Viscosity of the film with inertia: a decaying vortex, a shear layer, and flows that start from rest.
+// Viscosity of the film with inertia: a decaying vortex, a shear layer, and flows that start from
+// rest.
 
 #include <vector>
 
@@ -15,7 +16,8 @@ constexpr double kNu = 0.01;
 constexpr auto kDrag = film::WallFriction::kNoSlip;
 constexpr auto kNoDrag = film::WallFriction::kNone;
 
-/// Implicit steps of viscosity alone on a film of thickness 1, with a body force [m/s2] a unit of velocity.
+/// Implicit steps of viscosity alone on a film of thickness 1, with a body force [m/s2] a unit of
+/// velocity.
 Eigen::VectorXd diffuse(const FlatBox& box, film::WallFriction wall_friction, Eigen::VectorXd u, double time, int steps,
                         const Eigen::VectorXd& force) {
   film::ImplicitViscosity viscosity(box.grid);
@@ -30,7 +32,8 @@ Eigen::VectorXd diffuse(const FlatBox& box, film::WallFriction wall_friction, Ei
   return u;
 }
 
-/// What is left of the vortex after time 1: a quarter of the 2 pi box, which free-slip walls cut out.
+/// What is left of the vortex after time 1: a quarter of the 2 pi box, which free-slip walls cut
+/// out.
 double vortex_decay(int n, int steps, film::WallFriction wall_friction) {
   const FlatBox box(n, n, kPi, kPi);
   const Eigen::VectorXd start = box.flow_of([](double x, double y) { return std::sin(x) * std::sin(y); });
@@ -72,7 +75,8 @@ struct Across {
   }
 };
 
-/// Runs a flow along x from u0(y), under the force a(y), over a width of 2 with y = 0 in the middle.
+/// Runs a flow along x from u0(y), under the force a(y), over a width of 2 with y = 0 in the
+/// middle.
 template <typename Start, typename Force, typename Exact>
 Across run_across(int n, double time, int steps, Start start, Force force, Exact exact) {
   const double length = 40.0 * std::sqrt(kNu * time);
@@ -97,8 +101,8 @@ double side_of(double y) {
   return y < 0.0 ? -1.0 : 1.0;
 }
 
-/// Stokes' first problem. The film's side walls slip, so the wall is a plane of antisymmetry: a jump of velocity that
-/// spreads.
+/// Stokes' first problem. The film's side walls slip, so the wall is a plane of antisymmetry: a
+/// jump of velocity that spreads.
 TEST(StokesFirstProblem, SpreadsAsTheErrorFunction) {
   Case stokes({"film/4b-stokes", "Stokes' first problem: a layer of shear spreads in the plane of the film",
                "u = U erf(y/(2 sqrt(nu t))); the wall is a plane of antisymmetry."});
@@ -117,8 +121,8 @@ TEST(StokesFirstProblem, SpreadsAsTheErrorFunction) {
   stokes.record_curve({"t = 1", "y", "u/U", across.y, across.measured, across.expected});
 }
 
-/// a b^2/(2 nu) [1 - s^2 - sum 4 (-1)^n/l^3 cos(l s) exp(-l^2 nu t/b^2)], l = (n + 1/2) pi, s the distance from the
-/// middle over b.
+/// a b^2/(2 nu) [1 - s^2 - sum 4 (-1)^n/l^3 cos(l s) exp(-l^2 nu t/b^2)], l = (n + 1/2) pi, s the
+/// distance from the middle over b.
 double poiseuille(double s, double b, double t) {
   double sum = 1.0 - s * s;
   for (int n = 0; n < 60; ++n) {
@@ -128,8 +132,8 @@ double poiseuille(double s, double b, double t) {
   return b * b / (2.0 * kNu) * sum;
 }
 
-/// Between planes where the velocity is zero, again by antisymmetry: the force changes sign at y = 0, the middle of
-/// each channel lies on a slipping wall.
+/// Between planes where the velocity is zero, again by antisymmetry: the force changes sign at
+/// y = 0, the middle of each channel lies on a slipping wall.
 TEST(PoiseuilleStartUp, InThePlaneOfTheFilm) {
   Case channel({"film/4c-poiseuille", "Poiseuille flow starts from rest",
                 "In the plane of the film: the Fourier series of plane Poiseuille flow."});
@@ -148,9 +152,9 @@ TEST(PoiseuilleStartUp, InThePlaneOfTheFilm) {
   channel.record_curve({"in the plane, t = 20", "y", "u nu/a", across.y, across.measured, across.expected});
 }
 
-/// Under gravity along a long strip with so soft a wall that nothing holds the flow back but drag: the mean over the
-/// gap in the film's model, u' = g - 12 nu/h^2 u. (The exact mean of plane Poiseuille flow starts at the rate
-/// pi^2 nu/h^2 in its slowest mode; its end state is the same.)
+/// Under gravity along a long strip with so soft a wall that nothing holds the flow back but drag:
+/// the mean over the gap in the film's model, u' = g - 12 nu/h^2 u. (The exact mean of plane
+/// Poiseuille flow starts at the rate pi^2 nu/h^2 in its slowest mode; its end state is the same.)
 TEST(PoiseuilleStartUp, AcrossTheGap) {
   Case gap({"film/4c-poiseuille", "Poiseuille flow starts from rest",
             "Across the gap: u = g h^2/(12 nu) (1 - exp(-12 nu t/h^2)), the film's mean over the gap."});

@@ -9,8 +9,8 @@
 
 namespace lipofill::verification {
 
-/// A film over the rectangle (0, length_x) x (0, length_y), for cases that need a velocity to start from: the public
-/// interface starts at rest.
+/// A film over the rectangle (0, length_x) x (0, length_y), for cases that need a velocity to start
+/// from: the public interface starts at rest.
 struct FlatBox {
   film::FilmGrid grid;
   film::FilmMetric metric;
@@ -24,7 +24,8 @@ struct FlatBox {
     metric = film::compute_film_metric(grid, vertices);
   }
 
-  /// Edge velocities [m2/s] of the stream function psi: u = dpsi/dy, v = -dpsi/dx. Exact, and without divergence.
+  /// Edge velocities [m2/s] of the stream function psi: u = dpsi/dy, v = -dpsi/dx. Exact, and
+  /// without divergence.
   Eigen::VectorXd flow_of(const std::function<double(double x, double y)>& psi) const {
     Eigen::VectorXd flow(grid.n_edges());
     const auto at = [&](int vertex) { return psi(metric.vertices(0, vertex), metric.vertices(1, vertex)); };

@@ -24,12 +24,13 @@ model::TissueLayerSpec make_layer(const std::string& name, double thickness, dou
 
 struct Front {
   double place = 0.0;            ///< where the film is 0.5 mm thick [m]
-  double thickness = 0.0;        ///< at the source [m]
+  double thickness = 0.0;        ///< the film has it at the source [m]
   double lowest_pressure = 0.0;  ///< ever [Pa]
   double void_volume = 0.0;      ///< largest [m3]
 };
 
-/// A strip of a 2 mm plate over a pre-wetted film that 5 mm2/s of fat of 15 Pa s peels from one end for 4 s.
+/// A strip of a 2 mm plate over a pre-wetted film that 5 mm2/s of fat of 15 Pa s peels from one end
+/// for 4 s.
 Front peel(int n, double rest_thickness, double suction_limit) {
   const double length = 0.06;
   const double width = 1.5e-3;
@@ -108,8 +109,8 @@ TEST(PeelingFront, ConvergesAtAFixedSuctionLimit) {
   record_convergence("suction limit 500 Pa", 0.2e-3, 500.0);
 }
 
-// Fat of any viscosity in a film of any thickness at any step: accepted steps are stable, hold their volume and stay
-// positive.
+// Fat of any viscosity in a film of any thickness at any step: accepted steps are stable, hold
+// their volume and stay positive.
 TEST(AnyFat, AnyThicknessAndAnyStepAreStable) {
   Case record({"fat/6-any-fat", "Viscosity 0.01 to 1000 Pa s, films of 0.02 to 10 mm, steps of 1 ms to 10 s",
                "volume to round-off, gap equal to film, positive thickness, no failure"});

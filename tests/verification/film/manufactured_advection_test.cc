@@ -38,8 +38,8 @@ Eigen::Vector3d vector_of(const Chart& chart, const Eigen::Vector2d& q, double x
   return (q.x() * t.g1 + q.y() * t.g2) / t.sqrt_g;
 }
 
-/// The flow on a plane after dt: every particle keeps its velocity, so u(x) = u0(y) with y + dt u0(y) = x. y is found
-/// in chart coordinates by a fixed-point iteration with the tangents at x.
+/// The flow on a plane after dt: every particle keeps its velocity, so u(x) = u0(y) with y + dt
+/// u0(y) = x. y is found in chart coordinates by a fixed-point iteration with the tangents at x.
 Eigen::Vector2d flow_after(const Chart& chart, double dt, double xi, double eta) {
   const Tangents t = tangents_at(chart, xi, eta);
   const Eigen::Vector3d x = chart.point(xi, eta);
@@ -53,8 +53,8 @@ Eigen::Vector2d flow_after(const Chart& chart, double dt, double xi, double eta)
   return density_of(chart, u, xi, eta);
 }
 
-// One step of half a cell's passage: the error of a step is of second order in the L2 norm of edge fluxes, which makes
-// the whole first order in time.
+// One step of half a cell's passage: the error of a step is of second order in the L2 norm of edge
+// fluxes, which makes the whole first order in time.
 TEST(ChartAdvection, StepIsOfSecondOrderOnPlanes) {
   Case record = make_case();
   for (const Chart& chart : {charts()[0], charts()[1], charts()[2]}) {
@@ -74,8 +74,8 @@ TEST(ChartAdvection, StepIsOfSecondOrderOnPlanes) {
   }
 }
 
-// However the surface bends and the chart stretches, fat that does not move keeps its velocity: many short steps must
-// not wear it away.
+// However the surface bends and the chart stretches, fat that does not move keeps its velocity:
+// many short steps must not wear it away.
 TEST(ChartAdvection, StepOfNoLengthChangesNothing) {
   Case record = make_case();
   for (const Chart& chart : charts()) {

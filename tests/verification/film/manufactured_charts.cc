@@ -18,7 +18,8 @@ auto difference(const F& f) -> std::decay_t<decltype(f(0.0))> {
   return (8.0 * (f(kStep) - f(-kStep)) - (f(2.0 * kStep) - f(-2.0 * kStep))) / (12.0 * kStep);
 }
 
-/// Keeps the walls of the unit square in place and turns the lines inside it, up to 30 degrees at the walls.
+/// Keeps the walls of the unit square in place and turns the lines inside it, up to 30 degrees at
+/// the walls.
 Vector2d warp(double xi, double eta) {
   return {xi - 0.3 * std::sin(kPi * xi) * (eta - 0.5), eta + 0.35 * std::sin(kPi * eta) * (xi - 0.5)};
 }

@@ -1,9 +1,9 @@
 #pragma once
 
-// Charts that are not orthogonal, and what the calculus of surfaces says on them: the references that the film's
-// operators are held against. Everything here works on analytic fields of the chart coordinates and shares nothing with
-// the operators. Derivatives are central differences of fourth order over a thousandth of the chart: they are good to
-// 1e-9 a level, 1e-6 where three are nested.
+// Charts that are not orthogonal, and what the calculus of surfaces says on them: the references
+// that the film's operators are held against. Everything here works on analytic fields of the chart
+// coordinates and shares nothing with the operators. Derivatives are central differences of fourth
+// order over a thousandth of the chart: they are good to 1e-9 a level, 1e-6 where three are nested.
 
 #include <Eigen/Core>
 #include <array>
@@ -17,15 +17,16 @@
 namespace lipofill::verification {
 
 using Field = std::function<double(double xi, double eta)>;
-/// sqrt(g) u^a: what crosses lines of constant xi and of constant eta, a unit of the other coordinate.
+/// sqrt(g) u^a: what crosses lines of constant xi and of constant eta, a unit of the other
+/// coordinate.
 using FluxDensity = std::function<Eigen::Vector2d(double xi, double eta)>;
 
-/// A surface over the unit square. On charts with `natural_walls` these are lines of constant x or y, which cross at
-/// right angles there although those of xi and eta do not: the gradient of a product of cosines does not go through
-/// them.
+/// A surface over the unit square. On charts with `natural_walls` these are lines of constant x or
+/// y, which cross at right angles there although those of xi and eta do not: the gradient of a
+/// product of cosines does not go through them.
 struct Chart {
   std::string name;
-  std::function<Eigen::Vector2d(double xi, double eta)> plane;  ///< to the surface's own coordinates x, y
+  std::function<Eigen::Vector2d(double xi, double eta)> plane;  ///< maps to the surface's own coordinates x, y
   std::function<Eigen::Vector3d(double x, double y)> surface;
   bool natural_walls = false;
 
@@ -36,8 +37,8 @@ struct Chart {
   Field pull_back(const Field& of_place) const;
 };
 
-/// A parallelogram, a plane of varying angle, a stretched rectangle, a cylinder, a sphere and a bumpy surface; the last
-/// three with lines of xi and eta that cross at varying angles.
+/// A parallelogram, a plane of varying angle, a stretched rectangle, a cylinder, a sphere and a
+/// bumpy surface; the last three with lines of xi and eta that cross at varying angles.
 const std::vector<Chart>& charts();
 
 double d_xi(const Field& f, double xi, double eta);

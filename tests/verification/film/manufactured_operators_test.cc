@@ -1,4 +1,5 @@
-// Gradient and divergence of the film on charts that are not orthogonal, and the algebra they must obey there.
+// Gradient and divergence of the film on charts that are not orthogonal, and the algebra they must
+// obey there.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,8 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 const std::vector<int> kCells = {16, 32, 64};
 
-/// A pressure that drives no flow through the walls; along them it varies where the chart allows it.
+/// A pressure that drives no flow through the walls; along them it varies where the chart allows
+/// it.
 Field make_pressure(const Chart& chart) {
   if (!chart.natural_walls) return [](double xi, double eta) { return still_at_walls(xi, eta) * (1.0 + xi - eta); };
   return chart.pull_back([](double x, double y) { return std::cos(kPi * x) * std::cos(2.0 * kPi * y); });
@@ -88,7 +90,8 @@ Eigen::Vector2d swirl(double xi, double eta) {
   return {normal_xi * (1.0 + std::cos(2.0 * eta) + xi), normal_eta * (std::exp(xi) - 2.0 * eta)};
 }
 
-// Outflow of exact fluxes over the discrete area, against div u at cell centres: L2 norm over the surface.
+// Outflow of exact fluxes over the discrete area, against div u at cell centres: L2 norm over the
+// surface.
 TEST(ChartDivergence, OfExactFluxesIsOfSecondOrder) {
   Case record({"film/11-chart-divergence", "Divergence on charts that are not orthogonal",
                "1/sqrt(g) d_a (sqrt(g) u^a) of an analytic velocity"});

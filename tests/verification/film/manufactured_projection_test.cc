@@ -1,5 +1,5 @@
-// The pressure of the film on charts that are not orthogonal, with a thickness that varies: J p = s alone, and the
-// whole projection with a velocity, gravity and sources.
+// The pressure of the film on charts that are not orthogonal, with a thickness that varies: J p = s
+// alone, and the whole projection with a velocity, gravity and sources.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kViscosity = 0.5;
 const std::vector<int> kCells = {16, 32, 64};
 
-/// A pressure without flow through the walls; it varies along them where the chart has natural walls.
+/// A pressure without flow through the walls; it varies along them where the chart has natural
+/// walls.
 Field make_pressure(const Chart& chart) {
   if (!chart.natural_walls) return [](double xi, double eta) { return still_at_walls(xi, eta) * (1.0 + xi - eta); };
   return chart.pull_back([](double x, double y) { return std::cos(kPi * x) * std::cos(2.0 * kPi * y); });
@@ -96,15 +97,15 @@ Eigen::Vector2d swirl(double xi, double eta) {
   return {std::sin(kPi * xi) * (1.0 + xi), std::sin(kPi * eta) * (0.5 - eta * xi)};
 }
 
-/// What drives the fat apart from pressure, as the potential whose gradient it is [Pa]; like a pressure it pushes
-/// nothing through the walls.
+/// What drives the fat apart from pressure, as the potential whose gradient it is [Pa]; like a
+/// pressure it pushes nothing through the walls.
 Field make_weight(const Chart& chart) {
   if (!chart.natural_walls) return [](double xi, double eta) { return 0.5 * still_at_walls(xi, eta) * eta; };
   return chart.pull_back([](double x, double y) { return 0.3 * std::cos(2.0 * kPi * x) + 0.2 * std::cos(kPi * y); });
 }
 
-// F = h u - h^3/(12 mu) (grad p - rho b), V' = V + dt (s - div F) with sources s that keep V as it is. The edge
-// thickness is upwind: p and F converge to second order in the L2 norm all the same.
+// F = h u - h^3/(12 mu) (grad p - rho b), V' = V + dt (s - div F) with sources s that keep V as it
+// is. The edge thickness is upwind: p and F converge to second order in the L2 norm all the same.
 TEST(ChartProjection, WholeStepIsOfSecondOrder) {
   Case record({"film/13-chart-projection", "Projection on charts that are not orthogonal",
                "div(h u - h^3/(12 mu) (grad p - rho b)) = s, all of them analytic, integrated over edges"});

@@ -20,7 +20,8 @@ constexpr double kDt = 0.2;
 const film::Fat kFat{0.06, 1.5, film::WallFriction::kNoSlip};
 constexpr double kNu = 0.06 / 1.5;
 
-/// Velocity and thickness that meet the walls as the operator assumes: u.n = 0, curl u = 0, d(h div u)/dn = 0.
+/// Velocity and thickness that meet the walls as the operator assumes: u.n = 0, curl u = 0, d(h div
+/// u)/dn = 0.
 struct Motion {
   FluxDensity velocity;
   Field thickness;
@@ -39,8 +40,8 @@ Motion make_still_motion() {
           [](double xi, double eta) { return 1.0 + 0.4 * std::sin(2.0 * xi) * std::cos(3.0 * eta); }};
 }
 
-/// A gradient and a rotation that slip along the walls x = const, which are geodesics on all charts with natural walls;
-/// latitudes of the sphere are not, and the motion is still there.
+/// A gradient and a rotation that slip along the walls x = const, which are geodesics on all charts
+/// with natural walls; latitudes of the sphere are not, and the motion is still there.
 Motion make_slipping_motion(const Chart& chart) {
   const Field potential = chart.pull_back([](double x, double y) { return std::cos(kPi * x) * still(y); });
   const Field stream = chart.pull_back([](double x, double y) { return std::sin(kPi * x) * still(y); });

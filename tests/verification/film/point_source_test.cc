@@ -1,5 +1,5 @@
-// A constant flux from a point into a film on a Winkler wall, p = k h. Similarity: with R the front, s = r/R and
-// h = (R R'/beta)^(1/3) f(s),
+// A constant flux from a point into a film on a Winkler wall, p = k h. Similarity: with R the
+// front, s = r/R and h = (R R'/beta)^(1/3) f(s),
 //
 //     (s f^3 f')' = -s^2 f',   f(1) = 0,     Q = 2 pi beta (R R'/beta)^(4/3) m,   m = lim s -> 0 of -s f^3 f'
 //
@@ -19,7 +19,8 @@ using plan::FilmWallKind;
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// g = f^3 and m = -s f^3 f' = -s f g'/3 at places s, from the front inwards: g' = -3 m/(s f), m' = s^2 f' = -s m/g.
+/// g = f^3 and m = -s f^3 f' = -s f g'/3 at places s, from the front inwards: g' = -3 m/(s f),
+/// m' = s^2 f' = -s m/g.
 struct SimilarityProfile {
   std::vector<double> s, g, m;
 

@@ -29,7 +29,8 @@ const char kSlotReference[] =
     "plane Poiseuille flow: Bingham factor 1 - 3/2 B + 1/2 B^3, B = 2 tau_y/(h G); power law q = h^2/2 n/(2n+1) "
     "(h G/(2K))^(1/n)";
 
-// verification.md case 2: tau_y = 2 Pa on the slot of case 1 (mu = 10, G = 1e4 Pa/m) leaves 0.4320 of its flux.
+// verification.md case 2: tau_y = 2 Pa on the slot of case 1 (mu = 10, G = 1e4 Pa/m) leaves 0.4320
+// of its flux.
 TEST(NonNewtonianSlot, BinghamFlux) {
   Case record({"film/2-bingham-and-power-law", "Bingham and power-law fat in a slot", kSlotReference});
   plan::SimulationSpec fat;
@@ -87,8 +88,9 @@ plan::SimulationSpec make_ridge(int n, double stiffness, double end) {
   return spec;
 }
 
-// A Bingham ridge that collapses on a Winkler wall stops where the wall stress is the yield stress everywhere,
-// h/2 k |h'| = tau_y: h^2 falls linearly, by 4 tau_y/k a metre. A Newtonian one spreads on.
+// A Bingham ridge that collapses on a Winkler wall stops where the wall stress is the yield stress
+// everywhere, h/2 k |h'| = tau_y: h^2 falls linearly, by 4 tau_y/k a metre. A Newtonian one spreads
+// on.
 TEST(YieldStressDeposit, StopsWhereTheWallStressIsTheYieldStress) {
   Case record({"fat/1-arrested-ridge", "A yield-stress deposit stays, a Newtonian one spreads",
                "arrest: tau_y = h/2 |dp/dx| and p = k h give h^2 = (4 tau_y/k)(front - x); volume fixes the front"});
@@ -96,7 +98,7 @@ TEST(YieldStressDeposit, StopsWhereTheWallStressIsTheYieldStress) {
   const double stiffness = 1e6;
   const double yield_stress = 20.0;
   const double volume_per_width = 2e-3 * 0.5 * length;
-  const double fall = 4.0 * yield_stress / stiffness;  // of h^2 a metre
+  const double fall = 4.0 * yield_stress / stiffness;  // h^2 falls by this a metre
   // Area of sqrt(fall (R - x)) over 0 < x < R is 2/3 sqrt(fall) R^(3/2).
   const double front = std::pow(1.5 * volume_per_width / std::sqrt(fall), 2.0 / 3.0);
   ASSERT_LT(front, length);
@@ -130,7 +132,8 @@ TEST(YieldStressDeposit, StopsWhereTheWallStressIsTheYieldStress) {
                        "Bingham", "Newtonian"});
 }
 
-// Below the yield stress nothing creeps: a ridge too low to flow keeps its volumes and its pressure gradient.
+// Below the yield stress nothing creeps: a ridge too low to flow keeps its volumes and its pressure
+// gradient.
 TEST(YieldStressDeposit, UnyieldedFatHoldsItsPressureGradient) {
   Case record({"fat/2-unyielded", "Unyielded fat holds its pressure gradient",
                "wall stress h/2 |dp/dx| below tau_y: the flux is zero, whatever the time"});
@@ -155,7 +158,8 @@ TEST(YieldStressDeposit, UnyieldedFatHoldsItsPressureGradient) {
   record.record({"relative change of pressure after 2e4 s", "1", 1e-9, changed, 0.0, Bound::kAtMost});
 }
 
-// Flow of a Maxwell fluid started at once in a slot: dp/dx = 12 mu q/h^3 (1 - exp(-t/lambda)), lambda = mu/G.
+// Flow of a Maxwell fluid started at once in a slot: dp/dx = 12 mu q/h^3 (1 - exp(-t/lambda)),
+// lambda = mu/G.
 TEST(MaxwellFat, StressGrowsWithTheRelaxationTime) {
   Case record({"fat/3-maxwell", "Start-up of a Maxwell fluid at constant flux",
                "tau + lambda dtau/dt = mu rate at constant rate: 1 - exp(-t/lambda), lambda = mu/G"});
@@ -196,8 +200,8 @@ TEST(MaxwellFat, StressGrowsWithTheRelaxationTime) {
   record.record_curve({"pressure gradient", "time [s]", "gradient [Pa/m]", time, measured, expected});
 }
 
-// Gravity along a slot that is shut at both ends: the fat stands still and its pressure is hydrostatic; let through, it
-// falls at q = rho g h^3/(12 mu).
+// Gravity along a slot that is shut at both ends: the fat stands still and its pressure is
+// hydrostatic; let through, it falls at q = rho g h^3/(12 mu).
 TEST(GravityInASlot, DrivesTheFluxOfItsWeight) {
   Case record({"fat/4-gravity", "Gravity along a film",
                "hydrostatic pressure rho g L in a shut slot; q = rho g h^3/(12 mu) where the pressure is level"});

@@ -1,5 +1,5 @@
-// Reynolds flow between rigid plates, through the public simulation interface: fat goes in at one end of a film and out
-// at the other.
+// Reynolds flow between rigid plates, through the public simulation interface: fat goes in at one
+// end of a film and out at the other.
 
 #include <vector>
 
@@ -16,8 +16,8 @@ using plan::FilmWallKind;
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kViscosity = 10.0;
 
-/// Two probes inside a strip of n cells with a steady flux q [m2/s] along it; returns the pressure drop between them
-/// [Pa].
+/// Two probes inside a strip of n cells with a steady flux q [m2/s] along it; returns the pressure
+/// drop between them [Pa].
 double measure_drop(double length, const ScalarField& thickness, double q, int n, int first, int last) {
   plan::SimulationSpec spec;
   spec.fat_viscosity = kViscosity;
@@ -44,8 +44,9 @@ double wedge_drop(double q, double length, double h1, double h2) {
   return 6.0 * kViscosity * q * length * (h1 + h2) / (h1 * h1 * h2 * h2);
 }
 
-// The wedge 1 -> 0.5 mm over 50 mm, q = 1e-6 m2/s. Between its two ends: 18000 Pa. Probes lie in cells, so the drop is
-// taken between the first and the last one, and what the closed form gives for the half cells beyond is added.
+// The wedge 1 -> 0.5 mm over 50 mm, q = 1e-6 m2/s. Between its two ends: 18000 Pa. Probes lie in
+// cells, so the drop is taken between the first and the last one, and what the closed form gives
+// for the half cells beyond is added.
 TEST(Slot, DropOfAWedgeConvergesToSecondOrder) {
   Case wedge({"film/1b-wedge", "Wedge 1 -> 0.5 mm over 50 mm", "Reynolds: dp = 6 mu q L (h1 + h2)/(h1 h2)^2."});
   const double length = 0.05;
@@ -66,8 +67,9 @@ TEST(Slot, DropOfAWedgeConvergesToSecondOrder) {
   wedge.record_series({"drop", "cells along the wedge", cells, errors, 2.0, 1.8});
 }
 
-/// Potential of a unit source in the middle of a sealed unit square whose sink is spread evenly, at a distance r from
-/// it towards the middle of a side: -laplace G = delta - 1, by Fourier series along the other direction.
+/// Potential of a unit source in the middle of a sealed unit square whose sink is spread evenly, at
+/// a distance r from it towards the middle of a side: -laplace G = delta - 1, by Fourier series
+/// along the other direction.
 double potential_in_square(double r) {
   double sum = 0.5 * r * r - 0.5 * r + 1.0 / 12.0;
   for (int k = 1; k <= 2000; ++k) {
@@ -78,8 +80,9 @@ double potential_in_square(double r) {
   return sum;
 }
 
-// dp = 6 mu Q ln(r2/r1)/(pi h^3) of an unbounded film; Q = 1e-7 m3/s, r2/r1 = 10: 4397.61 Pa. In a square box, with an
-// even sink, the closed form changes by what potential_in_square says; the box's share is taken off the measured drop.
+// dp = 6 mu Q ln(r2/r1)/(pi h^3) of an unbounded film; Q = 1e-7 m3/s, r2/r1 = 10: 4397.61 Pa. In a
+// square box, with an even sink, the closed form changes by what potential_in_square says; the
+// box's share is taken off the measured drop.
 TEST(Slot, RadialSourceBetweenRigidPlates) {
   Case source({"film/1c-radial-source", "Radial source between rigid plates, r2/r1 = 10",
                "dp = 6 mu Q ln(r2/r1)/(pi h^3); the square box around it by a Fourier series."});

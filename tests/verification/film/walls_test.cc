@@ -13,10 +13,10 @@ using geometry::ChartPoint;
 using geometry::ScalarField;
 using plan::FilmWallKind;
 
-constexpr double kStiffness = 1e6;  // of the Winkler wall [Pa/m]
+constexpr double kStiffness = 1e6;  // the Winkler wall has it [Pa/m]
 
-// Two chambers on a Winkler wall with a leaky wall between them: the pressure difference falls as exp(-t/tau),
-// 1/tau = k L l (1/A1 + 1/A2), L the leakage and l the wall's length.
+// Two chambers on a Winkler wall with a leaky wall between them: the pressure difference falls as
+// exp(-t/tau), 1/tau = k L l (1/A1 + 1/A2), L the leakage and l the wall's length.
 TEST(LeakyWall, LetsTwoChambersLevelAtItsRate) {
   Case record({"anatomy/4-leaky-wall", "Two chambers on a Winkler wall level through a leaky wall",
                "d(dp)/dt = -k L l (1/A1 + 1/A2) dp"});
@@ -85,8 +85,8 @@ TEST(SealedWall, LeaksNothingAlongItsLength) {
       {"thickness beyond half a wall, levelled", "mm", 0.05 + 0.2e-6 / (0.04 * 0.04) * 1e3, 1e3 * far_side(0.5), 1e-4});
 }
 
-// Fat of hardly any viscosity fills the open half of a channel until its pressure, k V/A, is the entry pressure; from
-// then on it opens a cell whenever the pressure is there again.
+// Fat of hardly any viscosity fills the open half of a channel until its pressure, k V/A, is the
+// entry pressure; from then on it opens a cell whenever the pressure is there again.
 TEST(EntryPressure, HoldsTheFrontUntilItIsReached) {
   Case record({"anatomy/6-entry-pressure", "A front waits for its entry pressure",
                "p = k Q t/A of the open part reaches p_e at t = p_e A/(k Q); then the open area is k Q t/p_e"});

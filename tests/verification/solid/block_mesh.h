@@ -30,8 +30,9 @@ class BlockMesh {
   HexMesh mesh_;
 };
 
-/// Consistent nodal forces of a uniform pressure on the given face of the given hexahedra: the face towards the skin
-/// (nodes 4-7) or the deep face (nodes 0-3), pushing inwards through it. (3, n_nodes) [N]
+/// Consistent nodal forces of a uniform pressure on the given face of the given hexahedra: the face
+/// towards the skin (nodes 4-7) or the deep face (nodes 0-3), pushing inwards through it. (3,
+/// n_nodes) [N]
 Eigen::Matrix3Xd compute_pressure_force(const HexMesh& mesh, const std::function<bool(int)>& is_loaded, bool deep_face,
                                         double pressure);
 

@@ -1,6 +1,7 @@
-// Clamped plates under uniform pressure, one element through the thickness (verification case 6), and the first
-// eigenfrequency of the square one. References: Kirchhoff's plate, w0 = 0.00126532 p b^4 / D (square), p a^4 / (64 D)
-// (circle), f1 = 35.9852 / (2 pi b^2) sqrt(D / (rho t)); they are approached as the plate gets thin.
+// Clamped plates under uniform pressure, one element through the thickness (verification case 6),
+// and the first eigenfrequency of the square one. References: Kirchhoff's plate, w0 = 0.00126532 p
+// b^4 / D (square), p a^4 / (64 D) (circle), f1 = 35.9852 / (2 pi b^2) sqrt(D / (rho t)); they are
+// approached as the plate gets thin.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ constexpr double kPressure = 10.0;
 
 struct Plate {
   int n = 20;
-  double side = 0.1;  ///< of the square; the radius of the circle
+  double side = 0.1;  ///< the square has this side, the circle this radius
   double thickness = 0.002;
   double nu = 0.45;
   double distortion = 0.0;
@@ -164,7 +165,8 @@ TEST(ClampedSquare, FirstFrequency) {
   square.record({"f1, t/b = 1/200", "Hz", expected, compute_first_frequency(tissue), 0.002});
 }
 
-/// At t/b = 1/20 shear and rotary inertia lower it; a plate of first-order shear theory gives about 3 % for nu = 0.45.
+/// At t/b = 1/20 shear and rotary inertia lower it; a plate of first-order shear theory gives about
+/// 3 % for nu = 0.45.
 TEST(ClampedSquare, FirstFrequencyOfTheThickPlateIsBelowKirchhoffs) {
   Case square({"solid/9c-frequency", "First frequency of the clamped square plate",
                "Kirchhoff: f1 = 35.9852/(2 pi b^2) sqrt(D/(rho t)), 31.2045 Hz at t = 2 mm, b = 40 mm."});
@@ -174,7 +176,8 @@ TEST(ClampedSquare, FirstFrequencyOfTheThickPlateIsBelowKirchhoffs) {
   EXPECT_LT(f1, 31.2045);
 }
 
-// The circle: a quarter of three blocks, round a square in the middle, with rollers on its two straight sides.
+// The circle: a quarter of three blocks, round a square in the middle, with rollers on its two
+// straight sides.
 
 Eigen::Vector2d mix(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double s) {
   return (1.0 - s) * a + s * b;
@@ -205,7 +208,7 @@ HexMesh make_quarter_disc(const Plate& plate) {
 }
 
 struct DiscResult {
-  double deflection = 0.0;  ///< at the centre [m]
+  double deflection = 0.0;  ///< the centre moves this far [m]
   double volume = 0.0;      ///< swept by the whole disc [m3]
 };
 
@@ -260,8 +263,8 @@ TEST(ClampedCircle, ApproachesKirchhoffAsItThins) {
   circle.record_series({"w0 less its thin limit", "t/a", ratios, shear, 2.0, 1.8});
 }
 
-/// Case 6 itself, t/a = 1/10: first-order shear theory adds p a^2 / (4 kappa G t), kappa = 5/6, to Kirchhoff's 0.149531
-/// mm.
+/// Case 6 itself, t/a = 1/10: first-order shear theory adds p a^2 / (4 kappa G t), kappa = 5/6, to
+/// Kirchhoff's 0.149531 mm.
 TEST(ClampedCircle, ThickPlateHasItsShearDeflection) {
   const Plate plate{.n = 16, .side = 0.02};
   const double G = kYoungsModulus / (2.0 * (1.0 + plate.nu));

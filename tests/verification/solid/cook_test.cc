@@ -1,6 +1,6 @@
-// Cook's membrane in plane strain (verification case 8): a tapered panel, clamped on its left, sheared by a unit force
-// on its right. Trilinear elements lock here; EAS-9 does not. References: tip deflection of converged quadratic
-// elements, E = F = 1.
+// Cook's membrane in plane strain (verification case 8): a tapered panel, clamped on its left,
+// sheared by a unit force on its right. Trilinear elements lock here; EAS-9 does not. References:
+// tip deflection of converged quadratic elements, E = F = 1.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-// Elastica (verification case 9): a slender cantilever with a dead load across its tip, large rotations at small
-// strains. The solid-shell in a strip one element wide and thick, nu = 0 so that EI is that of a beam. Reference:
-// elliptic integrals.
+// Elastica (verification case 9): a slender cantilever with a dead load across its tip, large
+// rotations at small strains. The solid-shell in a strip one element wide and thick, nu = 0 so that
+// EI is that of a beam. Reference: elliptic integrals.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ constexpr int kElements = 20;
 
 struct Tip {
   double deflection = 0.0;  ///< w/L
-  double shortening = 0.0;  ///< of the chord, over L
+  double shortening = 0.0;  ///< the chord is shorter by this share of L
 };
 
 Tip bend(double load, TissueLaw law) {

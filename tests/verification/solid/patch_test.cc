@@ -1,7 +1,7 @@
-// Patch tests (verification case 8): a state of constant stress, or of constant moment, prescribed on the rim of an
-// irregular mesh is the solution inside. The solid-shell passes both on meshes distorted in the plane, with its faces
-// free; on meshes distorted in space it is not meant to pass. EAS-9 passes the constant stress patch on meshes
-// distorted in space.
+// Patch tests (verification case 8): a state of constant stress, or of constant moment, prescribed
+// on the rim of an irregular mesh is the solution inside. The solid-shell passes both on meshes
+// distorted in the plane, with its faces free; on meshes distorted in space it is not meant to
+// pass. EAS-9 passes the constant stress patch on meshes distorted in space.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,8 @@ HexMesh irregular_plate(const Box& box) {
 }
 
 TEST(PatchTest, SolidShellMembrane) {
-  // Plane stress: the free faces leave sigma_zz = 0, so the thickness strain follows from the others.
+  // Plane stress: the free faces leave sigma_zz = 0, so the thickness strain follows from the
+  // others.
   const double exx = 1e-3;
   const double eyy = -0.4e-3;
   const double gxy = 0.7e-3;
@@ -65,8 +66,8 @@ TEST(PatchTest, SolidShellMembrane) {
 }
 
 TEST(PatchTest, SolidShellBending) {
-  // Constant curvatures kx, ky, kxy about the mid-plane z = 0; the faces are free, so the thickness strain is linear in
-  // z.
+  // Constant curvatures kx, ky, kxy about the mid-plane z = 0; the faces are free, so the thickness
+  // strain is linear in z.
   const double kx = 0.5;
   const double ky = -0.2;
   const double kxy = 0.3;

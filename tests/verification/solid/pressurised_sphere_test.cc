@@ -1,4 +1,5 @@
-// Thick sphere under inner pressure (verification case 9), an eighth of it, EAS-9 through the wall. Lame's solution:
+// Thick sphere under inner pressure (verification case 9), an eighth of it, EAS-9 through the wall.
+// Lame's solution:
 //     u(a) = p a / (2 E (b^3 - a^3)) (2 (1 - 2 nu) a^3 + (1 + nu) b^3)
 
 #include <gtest/gtest.h>

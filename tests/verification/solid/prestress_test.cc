@@ -1,10 +1,11 @@
-// Skin under tension at rest, lifted by a pressure. A strip clamped at both ends (cylindrical bending) obeys
+// Skin under tension at rest, lifted by a pressure. A strip clamped at both ends (cylindrical
+// bending) obeys
 //
 //     D w'''' - T w'' = p,    T = sigma_0 t,   D = E t^3/(12 (1 - nu^2)),   w = w' = 0 at x = +-a
 //     w = p/(2 T) (a^2 - x^2) - p a/(T l) (cosh(l a) - cosh(l x))/sinh(l a),   l^2 = T/D
 //
-// and a square sheet tends to the membrane's w0 = 0.0736713 p b^2/T as bending fades, by the width sqrt(D/T) of the
-// zone along its edge where it bends.
+// and a square sheet tends to the membrane's w0 = 0.0736713 p b^2/T as bending fades, by the width
+// sqrt(D/T) of the zone along its edge where it bends.
 
 #include <gtest/gtest.h>
 
@@ -34,7 +35,8 @@ Case prestress_case() {
                "Closed form of D w'''' - T w'' = p for a clamped strip; series solution of the square membrane."});
 }
 
-/// Lift of the middle of a box under a pressure on its deep face. `holds(i, j)`: what of the column there is held.
+/// Lift of the middle of a box under a pressure on its deep face. `holds(i, j)`: what of the column
+/// there is held.
 double solve_lift(const Box& box, double tension, const std::function<std::array<bool, 3>(int i, int j)>& holds) {
   NodeSupports supports;
   supports.fixed.resize(box.n_nodes());
@@ -88,7 +90,8 @@ TEST(Prestress, ClampedStrip) {
     for (const double n : sizes) errors.push_back(strip_lift(tension, static_cast<int>(n)) / expected - 1.0);
     const std::string name = with_number("lift of the strip's middle, T L^2/D = %g", ratio);
     strip.record({name, "mm", 1e3 * expected, 1e3 * expected * (1.0 + errors.back()), 0.001});
-    // Stiffer still, linear elements are exact at their nodes but for the bent ends: no order to see.
+    // Stiffer still, linear elements are exact at their nodes but for the bent ends: no order to
+    // see.
     if (ratio <= 100.0) strip.record_series({name, "elements along the strip", sizes, errors});
   }
 }

@@ -1,4 +1,5 @@
-// Any rigid motion of any mesh: the internal force is nothing beside that of a 1 % stretch (verification case 8).
+// Any rigid motion of any mesh: the internal force is nothing beside that of a 1 % stretch
+// (verification case 8).
 
 #include <gtest/gtest.h>
 

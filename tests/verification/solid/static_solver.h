@@ -11,8 +11,8 @@ namespace lipofill::solid::testing {
 /// Displacements (3, n_nodes) of the linear problem K u = f at rest, fixed components zero.
 Eigen::Matrix3Xd solve_linear(Tissue& tissue, const Eigen::Matrix3Xd& force);
 
-/// Displacements of the linear problem K u = 0 at rest where the nodes `held` keep what `prescribed` gives them. The
-/// tissue has no supports of its own.
+/// Displacements of the linear problem K u = 0 at rest where the nodes `held` keep what
+/// `prescribed` gives them. The tissue has no supports of its own.
 Eigen::Matrix3Xd solve_prescribed(Tissue& tissue, const std::vector<bool>& held, const Eigen::Matrix3Xd& prescribed);
 
 struct StaticState {
@@ -21,8 +21,9 @@ struct StaticState {
   bool converged = false;
 };
 
-/// f_int(x) = f by Newton's method in `n_increments` of the load, to a relative residual of 1e-8. For small meshes: the
-/// Jacobian is dense, by central differences, since K leaves out how the rotations change with x.
+/// f_int(x) = f by Newton's method in `n_increments` of the load, to a relative residual of 1e-8.
+/// For small meshes: the Jacobian is dense, by central differences, since K leaves out how the
+/// rotations change with x.
 StaticState solve_static(Tissue& tissue, const Eigen::Matrix3Xd& force, int n_increments);
 
 /// What a solid that may deform by any amount is subject to.

@@ -1,6 +1,8 @@
-"""google.rpc.Status and its details: those of googleapis-common-protos where that is installed, else the project's own copy.
+"""google.rpc.Status and its details: those of googleapis-common-protos where that is installed,
+else the project's own copy.
 
-Protocol Buffers take a file of one name once a process; a program that uses both must get the same one.
+Protocol Buffers take a file of one name once a process; a program that uses both must get the same
+one.
 """
 
 from typing import TYPE_CHECKING

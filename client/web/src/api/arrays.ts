@@ -1,4 +1,5 @@
-// Arrays of meshes and frames: little-endian packed bytes, mapped without a copy where they lie on a boundary of their type.
+// Arrays of meshes and frames: little-endian packed bytes, mapped without a copy where they lie on
+// a boundary of their type.
 import { ArrayType, type ArraySlice } from "@wire/frame_service_pb";
 
 /** An array with all its bytes. */
@@ -35,7 +36,10 @@ function aligned(bytes: Uint8Array, size: number): Uint8Array {
   return bytes.byteOffset % size === 0 ? bytes : bytes.slice();
 }
 
-/** The values as they came: codes for UINT16. Shares the bytes unless they lie across a boundary of the type. */
+/**
+ * The values as they came: codes for UINT16. Shares the bytes unless they lie across a boundary of
+ * the type.
+ */
 export function view(array: WireArray): Typed {
   const size = elementSize(array.type);
   const bytes = aligned(array.bytes, size);

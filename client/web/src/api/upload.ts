@@ -1,4 +1,5 @@
-// Scans, on their way to the daemon, a chunk a call: an upload that broke off goes on where it stopped.
+// Scans, on their way to the daemon, a chunk a call: an upload that broke off goes on where it
+// stopped.
 import type { DescMethodUnary } from "@bufbuild/protobuf";
 import {
   PatientService,

@@ -113,12 +113,16 @@ class Progress {
     }
   }
 
-  /** Half a window at a time: frames go on coming, and a page that falls behind is never more than a window old. */
+  /**
+   * Half a window at a time: frames go on coming, and a page that falls behind is never more than a
+   * window old.
+   */
   private acknowledge(): void {
     if (++this.unacknowledged < window / 2) return;
     this.unacknowledged = 0;
     const { simulation } = this.options;
-    // What is lost with the connection is acknowledged by coming back; that the viewer is gone shows in the stream.
+    // What is lost with the connection is acknowledged by coming back; that the viewer is gone
+    // shows in the stream.
     frames
       .acknowledgeFrame({ simulation, viewer: this.viewer, epoch: this.epoch, sequence: this.sequence })
       .catch(() => undefined);
@@ -127,7 +131,10 @@ class Progress {
 
 const pause = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
 
-/** Returns after the last frame, or when `signal` aborts. @throws ConnectError for anything but a lost connection */
+/**
+ * Returns after the last frame, or when `signal` aborts.
+ * @throws ConnectError for anything but a lost connection
+ */
 export async function watch(options: WatchOptions, listener: Listener): Promise<void> {
   const progress = new Progress(options, listener);
   for (let failures = 0; !progress.ended && !options.signal.aborted; ) {

@@ -1,5 +1,5 @@
-// Small pictures of many simulations, one after the other: a stream is opened for a frame and left again, so that a wall
-// of them takes one connection and one canvas.
+// Small pictures of many simulations, one after the other: a stream is opened for a frame and left
+// again, so that a wall of them takes one connection and one canvas.
 import { ArrayType } from "@wire/frame_service_pb";
 import { Simulation_State, type Simulation } from "@wire/simulation_pb";
 import { ArrayAssembler, toNumbers } from "../api/arrays";

@@ -5,7 +5,7 @@ import type { Patient, Scan } from "@wire/patient_service_pb";
 import { ScanUnit } from "@wire/plan_pb";
 import { patients as calls } from "../api/client";
 import { landmarkHints, landmarkNames, readable } from "../plan/anatomy";
-import { openSample, pickScan, uploadFace, useLandmarks, usePlan } from "../plan/actions";
+import { openSample, pickScan, takeLandmarks, takePlan, uploadFace } from "../plan/actions";
 import { writeLandmarks } from "../plan/landmarks";
 import { parsePlan } from "../plan/plan_file";
 import { editPlan, patient, plan, region, scan } from "../plan/state";
@@ -41,7 +41,8 @@ async function choosePatient(name: string): Promise<void> {
 const shortName = (name: string): string => name.split("/").pop()!;
 
 function Source() {
-  useEffect(() => void loadPatients(), [scan.value?.name]);
+  const scanName = scan.value?.name;
+  useEffect(() => void loadPatients(), [scanName]);
   return (
     <Section title="Face">
       <div class="row">
@@ -115,7 +116,7 @@ function Landmarks() {
           accept=".json"
           onFiles={async ([file]) => {
             try {
-              useLandmarks(await file.text());
+              takeLandmarks(await file.text());
             } catch (error) {
               tell(error);
             }
@@ -178,7 +179,7 @@ export function FacePanel() {
           accept=".json"
           onFiles={async ([file]) => {
             try {
-              usePlan(parsePlan(await file.text()));
+              takePlan(parsePlan(await file.text()));
             } catch (error) {
               tell(error);
             }

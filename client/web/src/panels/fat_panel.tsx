@@ -133,7 +133,7 @@ function Fat() {
     <Section title="Fat">
       <SelectField
         label="Preparation"
-        value={preset === 0 ? FatPreset.NEWTONIAN : preset}
+        value={preset === FatPreset.FAT_PRESET_UNSPECIFIED ? FatPreset.NEWTONIAN : preset}
         field="simulation.fat"
         onChange={(value) =>
           editPlan(({ simulation }) => (simulation!.fat = create(FatSchema, { preset: Number(value) })))

@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import { create } from "@bufbuild/protobuf";
 import { ScanUnit } from "@wire/plan_pb";
-import { InjectionSchema, Simulation_State, type Simulation } from "@wire/simulation_pb";
+import { InjectionSchema, Simulation_State } from "@wire/simulation_pb";
 import { simulations } from "../api/client";
 import { uploadScan } from "../api/upload";
 import { readable } from "../plan/anatomy";
@@ -140,7 +140,7 @@ function InjectMore() {
 
 async function compareWith(file: File): Promise<void> {
   await attempt("Measuring the distance to the target", async (progress) => {
-    const { name, spec } = simulation.value as Simulation;
+    const { name, spec } = simulation.value!;
     const parent = spec!.model.split("/models/")[0];
     const target = await uploadScan(
       parent,

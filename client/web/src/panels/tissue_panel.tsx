@@ -15,7 +15,7 @@ const chosen = signal("jaw_zones");
 export const showLayers = signal(false);
 export const layerShown = signal<boolean[]>([]);
 
-function useRegion(key: string, of: Side): void {
+function chooseRegion(key: string, of: Side): void {
   [chosen.value, side.value] = [key, of];
   editPlan(({ model: spec }) => {
     if (spec?.geometry.case !== "scanRegion") return;
@@ -32,7 +32,7 @@ function Region() {
         label="Part of the face"
         value={chosen.value}
         options={regionLabels.map(({ key, label }) => ({ value: key, label }))}
-        onChange={(key) => useRegion(key, side.value)}
+        onChange={(key) => chooseRegion(key, side.value)}
       />
       <Segmented
         label="Side"
@@ -41,7 +41,7 @@ function Region() {
           { value: "left", label: "Left" },
           { value: "right", label: "Right" },
         ]}
-        onChange={(next) => useRegion(chosen.value, next)}
+        onChange={(next) => chooseRegion(chosen.value, next)}
       />
       {missing.length > 0 && <p class="hint">Needs: {missing.map(readable).join("; ")}</p>}
       {region.value?.around ? <Surroundings /> : <Corners />}
@@ -181,12 +181,13 @@ function Layers() {
         onChange={(value) => {
           if (value === "") return;
           editPlan(({ model: spec }) => {
+            const kind = Number(value) as TissueLayer_Kind;
             const name = freeName(
-              TissueLayer_Kind[Number(value)].toLowerCase(),
+              TissueLayer_Kind[kind].toLowerCase(),
               spec!.layers.map((layer) => layer.name),
             );
-            const layer = create(TissueLayerSchema, { name, kind: Number(value) });
-            const inner = spec!.layers.findIndex(({ kind }) => kind > Number(value));
+            const layer = create(TissueLayerSchema, { name, kind });
+            const inner = spec!.layers.findIndex((other) => other.kind > kind);
             spec!.layers.splice(inner < 0 ? spec!.layers.length : inner, 0, layer);
           });
         }}

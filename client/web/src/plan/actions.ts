@@ -72,7 +72,7 @@ export async function uploadFace(fileName: string, content: ArrayBuffer, unit: S
   });
 }
 
-export function useLandmarks(text: string, unit = scanFile.value.unit): void {
+export function takeLandmarks(text: string, unit = scanFile.value.unit): void {
   const { points, axes } = parseLandmarks(text, unit);
   editPlan(({ model: spec }) => {
     if (spec?.geometry.case !== "scanRegion") return;
@@ -82,7 +82,7 @@ export function useLandmarks(text: string, unit = scanFile.value.unit): void {
 }
 
 /** A plan from a file; the scan and the landmarks of the page stay. */
-export function usePlan(next: Plan): void {
+export function takePlan(next: Plan): void {
   batch(() => {
     const before = region.value;
     if (next.model?.geometry.case === "scanRegion") {
@@ -109,7 +109,7 @@ export async function openSample(name = "jaw_angle"): Promise<void> {
   const ready = await attempt("Opening the sample", async (progress) => {
     const next = parsePlan(await (await sample(`plans/${name}.json`)).text());
     const file = next.scan?.file.replace(/^\.\.\//, "") ?? "";
-    if (file === "") return usePlan(next);
+    if (file === "") return takePlan(next);
     const [face, landmarks] = await Promise.all([
       sample(file).then((r) => r.arrayBuffer()),
       sample(next.scan!.landmarksFile.replace(/^\.\.\//, "")).then((r) => r.text()),
@@ -121,8 +121,8 @@ export async function openSample(name = "jaw_angle"): Promise<void> {
     const meshes = await collectMeshes(patients.downloadScanMesh({ name: made.name }));
     batch(() => {
       scanFile.value = { name: file.split("/").pop()!, unit: ScanUnit.MILLIMETRE };
-      usePlan(next);
-      useLandmarks(landmarks, ScanUnit.MILLIMETRE);
+      takePlan(next);
+      takeLandmarks(landmarks, ScanUnit.MILLIMETRE);
       showScan(made, meshes);
     });
   });

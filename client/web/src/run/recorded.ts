@@ -1,4 +1,5 @@
 // A folder that `lipofill run` has written, opened in the page: meshes over time, series and summary.
+import type vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
 import vtkXMLPolyDataReader from "@kitware/vtk.js/IO/XML/XMLPolyDataReader";
 import { fromJson, type JsonValue } from "@bufbuild/protobuf";
 import { batch } from "@preact/signals";
@@ -46,7 +47,7 @@ function floats(name: string, values: ArrayLike<number>, components: number): Wi
 async function readSurface(file: File, name: string): Promise<Surface> {
   const reader = vtkXMLPolyDataReader.newInstance();
   reader.parseAsArrayBuffer(await file.arrayBuffer());
-  const data = reader.getOutputData(0);
+  const data = reader.getOutputData(0) as vtkPolyData;
   const mesh = { name, points: Float32Array.from(data.getPoints().getData()), ...cellsOf(data.getPolys().getData()) };
   const fields = new Map<string, WireArray>();
   for (const array of data.getPointData().getArrays()) {
@@ -67,9 +68,9 @@ function parseSummary(text: string): Simulation {
   const document = JSON.parse(text) as Record<string, JsonValue>;
   const known = {
     name: "simulations/recorded",
-    state: document["state"],
-    reason: document["reason"] ?? "",
-    summary: document["summary"] ?? document,
+    state: document.state,
+    reason: document.reason ?? "",
+    summary: document.summary ?? document,
   };
   return fromJson(SimulationSchema, known as JsonValue, { ignoreUnknownFields: true });
 }

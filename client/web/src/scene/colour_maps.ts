@@ -37,7 +37,10 @@ const diverging: Rgb[] = [
 
 export const mmHgPerPa = 1 / 133.322;
 
-/** Of settled pressure; the bounds are assumed, see "Pressure bands" of the reference. Lightness falls from band to band. */
+/**
+ * The bands of settled pressure. Their bounds are assumed, see "Pressure bands" of the reference;
+ * lightness falls from band to band.
+ */
 export const pressureBands: { from: number; name: string; colour: Rgb }[] = [
   { from: -Infinity, name: "below 9", colour: [112, 196, 178] },
   { from: 9, name: "9 to 15", colour: [240, 200, 80] },

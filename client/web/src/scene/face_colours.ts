@@ -86,7 +86,9 @@ export function colourFace(
   surface.recolour();
 }
 
-/** A map that only grows while a run goes on, so that a colour means the same from frame to frame. */
+/**
+ * A map that only grows while a run goes on, so that a colour means the same from frame to frame.
+ */
 export class RunningMap {
   private largest = 0;
   private of: Quantity = "displacement";

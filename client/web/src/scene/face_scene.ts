@@ -1,4 +1,5 @@
-// The face on the page: before and after, its region and layers, what a frame colours, what lies under the cursor.
+// The face on the page: before and after, its region and layers, what a frame colours, what lies
+// under the cursor.
 import type { Mesh } from "../api/meshes";
 import type { Frame } from "../api/watch";
 import type { ColourMap, Quantity, Rgb } from "./colour_maps";

@@ -1,4 +1,5 @@
-// What follows from the points of a surface: normals, where a ray meets it, which vertices neighbour which.
+// What follows from the points of a surface: normals, where a ray meets it, which vertices
+// neighbour which.
 export type Point = [number, number, number];
 
 /** Unit normals of the vertices, by area, written into `out`. */

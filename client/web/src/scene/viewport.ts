@@ -1,4 +1,5 @@
-// A picture of the scene on the page: one WebGL canvas, a camera that is turned by hand, rays under the cursor.
+// A picture of the scene on the page: one WebGL canvas, a camera that is turned by hand, rays under
+// the cursor.
 import "@kitware/vtk.js/Rendering/OpenGL/Camera";
 import "@kitware/vtk.js/Rendering/OpenGL/Renderer";
 import "@kitware/vtk.js/Rendering/OpenGL/Actor";
@@ -50,7 +51,7 @@ export class Viewport {
   constructor(readonly container: HTMLElement) {
     this.renderWindow.addRenderer(this.renderer);
     this.renderWindow.addView(this.gl);
-    const canvas = this.gl.getCanvas() as HTMLCanvasElement;
+    const canvas = this.gl.getCanvas()!;
     canvas.getContext("webgl2", {
       antialias: hasGraphicsCard(),
       depth: true,
@@ -79,7 +80,10 @@ export class Viewport {
     this.request();
   }
 
-  /** Pixels of the picture to those of the screen; fewer where a machine is too slow for all of them. */
+  /**
+   * Pixels of the picture to those of the screen; fewer where a machine is too slow for all of
+   * them.
+   */
   set detail(share: number) {
     if (share === this.sharpness) return;
     this.sharpness = share;
@@ -172,7 +176,7 @@ export class Viewport {
   }
 
   canvas(): HTMLCanvasElement {
-    return this.gl.getCanvas() as HTMLCanvasElement;
+    return this.gl.getCanvas()!;
   }
 
   dispose(): void {

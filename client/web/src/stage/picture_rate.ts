@@ -16,7 +16,7 @@ export function countPictures(scene: FaceScene, element: HTMLElement): () => voi
     if (frame.value === last || frame.value === undefined) return;
     last = frame.value;
     shown += 1;
-    element.dataset["pictures"] = String((total += 1));
+    element.dataset.pictures = String((total += 1));
   };
   const timer = setInterval(() => {
     const now = performance.now();

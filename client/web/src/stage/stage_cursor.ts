@@ -71,5 +71,5 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
       outer.removeEventListener("pointerup", up, true);
       outer.removeEventListener("pointerleave", leave);
     };
-  }, []);
+  }, [main]);
 }

@@ -140,7 +140,7 @@ export function FileButton({
   label: string;
   accept?: string;
   folder?: boolean;
-  onFiles: (files: File[]) => void;
+  onFiles: (files: File[]) => void | Promise<void>;
 }) {
   return (
     <label class="button">
@@ -154,7 +154,7 @@ export function FileButton({
         onChange={(event) => {
           const files = Array.from(event.currentTarget.files ?? []);
           event.currentTarget.value = "";
-          if (files.length > 0) onFiles(files);
+          if (files.length > 0) void onFiles(files);
         }}
       />
     </label>

@@ -57,7 +57,10 @@ async function still(name: string): Promise<Buffer> {
   return before;
 }
 
-/** Waits until the picture is as it should be: the daemon and a browser without a graphics card take their time. */
+/**
+ * Waits until the picture is as it should be: the daemon and a browser without a graphics card take
+ * their time.
+ */
 const soon = { timeout: 30_000, interval: 500 };
 
 async function take(what: string): Promise<string> {

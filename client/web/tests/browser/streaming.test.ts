@@ -1,4 +1,5 @@
-// A long stream: through the daemon's sudden end, and for a minute with memory that stays where it is.
+// A long stream: through the daemon's sudden end, and for a minute with memory that stays where it
+// is.
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import type { CDPSession, Page } from "playwright-core";
@@ -9,7 +10,9 @@ const system = new System();
 const errors: string[] = [];
 let page: Page;
 
-/** The paper-size patient, injected slowly and watched in real time for as long as the test takes. */
+/**
+ * The paper-size patient, injected slowly and watched in real time for as long as the test takes.
+ */
 function longPlan(): string {
   const plan = JSON.parse(readFileSync(join(root, "client/examples/plans/jaw_angle.json"), "utf8"));
   plan.simulation.pace = "REAL_TIME";
@@ -40,7 +43,7 @@ afterEach(async ({ task }) => {
 const shownTime = (): Promise<number> =>
   page.evaluate(() => parseFloat(document.querySelector(".timeline output")?.textContent ?? "0"));
 const pictures = (): Promise<number> =>
-  page.evaluate(() => Number(document.querySelector<HTMLElement>(".stage")?.dataset["pictures"] ?? 0));
+  page.evaluate(() => Number(document.querySelector<HTMLElement>(".stage")?.dataset.pictures ?? 0));
 const laterThan = (time: number): Promise<unknown> =>
   page.waitForFunction(
     (least) => parseFloat(document.querySelector(".timeline output")?.textContent ?? "0") > least,
@@ -92,7 +95,10 @@ describe("the daemon's sudden end", () => {
   });
 });
 
-/** What drawing took of the processor, in the page and in the process that stands in for a graphics card, seconds. */
+/**
+ * What drawing took of the processor, in the page and in the process that stands in for a graphics
+ * card, seconds.
+ */
 async function cpuOf(browser: CDPSession): Promise<number> {
   const { processInfo } = await browser.send("SystemInfo.getProcessInfo");
   return processInfo

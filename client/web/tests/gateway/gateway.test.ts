@@ -181,7 +181,10 @@ describe("a slow browser", () => {
   });
 });
 
-/** What a call through a gateway ends with when its daemon's connection ends so, with the call's first bytes. */
+/**
+ * What a call through a gateway ends with when its daemon's connection ends so, with the call's
+ * first bytes.
+ */
 async function callLosing(end: (socket: Socket) => void): Promise<ConnectError> {
   const dying = createServer((socket) => socket.on("error", () => undefined).once("data", () => end(socket)));
   await new Promise<void>((resolve) => dying.listen(0, "127.0.0.1", resolve));

@@ -44,7 +44,9 @@ const inBrowser = (): Pixels => {
   };
 };
 
-type WithPixels = { pixels: Pixels };
+interface WithPixels {
+  pixels: Pixels;
+}
 
 export class PictureReader {
   private constructor(private readonly page: Page) {}
@@ -57,7 +59,9 @@ export class PictureReader {
     return new PictureReader(blank);
   }
 
-  /** Pixels whose hue is that of `colour`, however the scene's light makes it brighter or darker. */
+  /**
+   * Pixels whose hue is that of `colour`, however the scene's light makes it brighter or darker.
+   */
   ofHue(image: Buffer, box: Box, colour: number[]): Promise<number> {
     return this.page.evaluate(([data, where, of]) => (window as unknown as WithPixels).pixels.ofHue(data, where, of), [
       image.toString("base64"),

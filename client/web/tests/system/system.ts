@@ -7,7 +7,7 @@ import { fileURLToPath } from "node:url";
 import { chromium, type Browser, type Page } from "playwright-core";
 
 export const root = fileURLToPath(new URL("../../../../", import.meta.url));
-export const bin = process.env["LIPOFILL_BIN"] ?? join(root, "build/release/bin");
+export const bin = process.env.LIPOFILL_BIN ?? join(root, "build/release/bin");
 const built = join(root, "build/web");
 export const pictures = join(built, "screenshots");
 
@@ -81,7 +81,7 @@ export class System {
 
   async startBrowser(): Promise<void> {
     this.browser = await chromium.launch({
-      executablePath: process.env["CHROMIUM"] ?? "/usr/bin/chromium",
+      executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
       args: [
         "--no-sandbox",
         "--disable-dev-shm-usage",

@@ -36,7 +36,7 @@ describe("a plan file", () => {
 describe("landmarks", () => {
   it("are read in the unit of the scan and written in millimetres", () => {
     const { points, axes } = parseLandmarks(landmarkText, ScanUnit.CENTIMETRE);
-    expect(points["nasion"].y).toBeCloseTo(854.14, 3);
+    expect(points.nasion.y).toBeCloseTo(854.14, 3);
     const again = parseLandmarks(writeLandmarks(points, axes), ScanUnit.MILLIMETRE);
     expect(again.points).toEqual(points);
     expect(again.axes).toEqual(axes);
@@ -50,7 +50,7 @@ describe("landmarks", () => {
   it("place a corner by weights and offsets along the head", () => {
     const { points, axes } = parseLandmarks(landmarkText, ScanUnit.MILLIMETRE);
     const at = locate(cornersOf("jaw", "left")[1], points, axes)!;
-    const gonion = pointOf(points["gonion_left"]);
+    const gonion = pointOf(points.gonion_left);
     expect(at[0]).toBeCloseTo(gonion[0] - 2);
     expect(at[1]).toBeCloseTo(gonion[1] - 17);
     expect(at[2]).toBeCloseTo(gonion[2] - 12);

@@ -84,7 +84,7 @@ TEST(Metrics, LookFiguresUpAtEachScrape) {
 }
 
 TEST(Metrics, KnowTheirProcess) {
-  std::thread([] {}).join();  // with the first thread a sanitizer starts one of its own
+  std::thread([] {}).join();  // a sanitizer starts a thread of its own with the first one
   const ProcessFigures before = read_process_figures();
   EXPECT_GT(before.resident_bytes, 1e6);
   EXPECT_GT(before.open_files, 2.0);

@@ -9,7 +9,8 @@ struct evp_pkey_st;
 
 namespace lipofill::testing {
 
-/// A key made for the test, and the tokens it signs. Made with OpenSSL alone, not with the library that verifies them.
+/// A key made for the test, and the tokens it signs. Made with OpenSSL alone, not with the library
+/// that verifies them.
 class SigningKey {
  public:
   static SigningKey rsa(unsigned int bits = 2048);

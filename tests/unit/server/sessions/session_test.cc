@@ -98,7 +98,8 @@ TEST_F(SessionTest, ShowsFramesUntilTheEndAndAfterIt) {
   EXPECT_TRUE(std::get<FrameToSend>(late->take()).frame->end);
 }
 
-/// Eight viewers at 60 Hz are 480 frames a second: more than that share them, and are due at the same moments.
+/// Eight viewers at 60 Hz are 480 frames a second: more than that share them, and are due at the
+/// same moments.
 TEST_F(SessionTest, ManyViewersShareARateUnlessTheyAskForOne) {
   const auto s = session("a", 1e6);
   const auto at = [](int ms) { return Viewer::Clock::time_point(std::chrono::milliseconds(ms)); };

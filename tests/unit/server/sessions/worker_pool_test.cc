@@ -69,8 +69,9 @@ TEST(WorkerPool, GivesTheSameTimeToLongAndShortTurns) {
   small->done.get_future().wait();
   pool.stop();
   EXPECT_EQ(log.substr(0, 2), "Bs");
-  // Whoever has had least is next: no two are further apart than a turn. Another turn may come before the pool stops;
-  // half of one is for what the pool itself takes. Turn about would give sixty turns.
+  // Whoever has had least is next: no two are further apart than a turn. Another turn may come
+  // before the pool stops; half of one is for what the pool itself takes. Turn about would give
+  // sixty turns.
   const auto longest = std::max(big->longest, small->longest);
   EXPECT_LE(big->used, small->used + longest * 5 / 2);
 }

@@ -106,7 +106,8 @@ ChosenRectangle clear_in_frame(const FlatPatch& patch, double margin, const Eige
   return chosen;
 }
 
-/// The smallest rectangle; where a border cuts it, the one of all directions that keeps most of the footprints.
+/// The smallest rectangle; where a border cuts it, the one of all directions that keeps most of the
+/// footprints.
 ChosenRectangle choose_rectangle(const FlatPatch& patch, double margin) {
   ChosenRectangle best = clear_in_frame(patch, margin, choose_smallest(patch, margin));
   if (best.kept == std::ssize(patch.content)) return best;

@@ -8,7 +8,8 @@
 
 namespace lipofill::geometry {
 
-/// Integrals over the part of a rectangle that lies inside outlines, in coordinates s, t of [0, 1] x [0, 1]:
+/// Integrals over the part of a rectangle that lies inside outlines, in coordinates s, t of [0,
+/// 1] x [0, 1]:
 ///
 ///     one = int ds dt, s = int s ds dt, t = int t ds dt, st = int s t ds dt
 ///

@@ -61,7 +61,8 @@ class Tracer {
     }
     if (crossings.size() == 2) join(crossings[0], crossings[1]);
     if (crossings.size() != 4) return;
-    // Two corners that lie across from one another are inside: the centre says whether they are joined.
+    // Two corners that lie across from one another are inside: the centre says whether they are
+    // joined.
     const ChartPoint middle{(i + 0.5) / n_xi_, (j + 0.5) / n_eta_};
     const bool are_joined = value_at(middle) >= 0.0;
     const size_t shift = are_joined == crossings[0].leaves ? 0 : 1;

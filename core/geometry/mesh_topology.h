@@ -8,7 +8,8 @@
 
 namespace lipofill::geometry {
 
-/// A mesh whose points move: what viewers draw. `kind` 3: triangles, 4: quadrilaterals, 8: hexahedra.
+/// A mesh whose points move: what viewers draw. `kind` 3: triangles, 4: quadrilaterals, 8:
+/// hexahedra.
 struct MeshTopology {
   std::string name;              ///< "skin", "scan", "film/<name>", "tissue"
   std::vector<float> points_mm;  ///< (n_points, 3) at rest
@@ -18,11 +19,13 @@ struct MeshTopology {
   int n_cells() const { return static_cast<int>(cells.size()) / kind; }
 };
 
-/// "skin": the nodes of level 0 and the quadrilaterals between them, anticlockwise seen from outside.
+/// "skin": the nodes of level 0 and the quadrilaterals between them, anticlockwise seen from
+/// outside.
 MeshTopology make_skin_mesh(const LayeredGrid& grid);
 /// "scan": vertices and triangles as they were given.
 MeshTopology make_scan_mesh(const SurfaceMesh& scan);
-/// "tissue": all hexahedra, not split by any film, in the order of solid::HexMesh: the deep face first.
+/// "tissue": all hexahedra, not split by any film, in the order of solid::HexMesh: the deep face
+/// first.
 MeshTopology make_tissue_mesh(const LayeredGrid& grid);
 
 /// The meshes of a model at rest: "skin", then "scan" and "tissue" where it has them.

@@ -52,8 +52,8 @@ void add_prestress(Hasher& hasher, const std::vector<TissueLayerSpec>& layers) {
   for (const TissueLayerSpec& layer : layers) hasher.add(layer.material.prestress);
 }
 
-/// Adds the laws to the hash, at the end and only if one is not the paper's: such a model keeps the hash it had before
-/// layers had a law.
+/// Adds the laws to the hash, at the end and only if one is not the paper's: such a model keeps the
+/// hash it had before layers had a law.
 void add_laws(Hasher& hasher, const std::vector<TissueLayerSpec>& layers) {
   const auto is_other = [](const TissueLayerSpec& layer) {
     return layer.material.law != solid::TissueLaw::kCorotational;

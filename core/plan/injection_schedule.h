@@ -27,8 +27,8 @@ struct PlacedInjection {
 /// The volumes injected into each cell over time.
 class InjectionSchedule {
  public:
-  /// Places an injection that may be added. Field violations are named as in lipofill.v1.Injection. Without a start it
-  /// begins at `now` or when the last one ends.
+  /// Places an injection that may be added. Field violations are named as in lipofill.v1.Injection.
+  /// Without a start it begins at `now` or when the last one ends.
   absl::StatusOr<PlacedInjection> place(const model::FaceModel& model, const std::vector<FilmLayout>& films,
                                         const InjectionSpec& spec, double now) const;
   void add(PlacedInjection injection);

@@ -18,7 +18,8 @@ struct PlacedZones {
   std::vector<film::SlotCover> cover;  ///< of each slot by its own zone
   std::vector<film::SlotFragment> fragments;
   std::vector<geometry::Level> levels;  ///< of each zone: positive where the fat is its own
-  /// The same as several levels of which all are positive there, without the corners that one of their minimum has.
+  /// The same as several levels of which all are positive there, without the corners that one of
+  /// their minimum has.
   std::vector<std::vector<geometry::Level>> cutting;
   std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< of each zone, twice as fine as the grid of the tissue
   double uncounted = 0.0;                                    ///< slots' worth of zones that no cell could take

@@ -19,7 +19,8 @@ struct PlacedZone {
   std::string name;
   int n_cells = 0;
   double area = 0.0;  ///< of the skin over its cells [m2]
-  /// Closed lines around it on the undeformed skin [m] (3, n): as drawn, or along its cells (plan::ZoneOutline).
+  /// Closed lines around it on the undeformed skin [m] (3, n): as drawn, or along its cells
+  /// (plan::ZoneOutline).
   std::vector<Eigen::Matrix3Xd> outline;
 };
 

@@ -132,9 +132,10 @@ class Simulation {
   /// Field violations named as in lipofill.v1.Injection. A settled or finished simulation does not
   /// take one: FAILED_PRECONDITION.
   absl::Status inject(const plan::InjectionSpec& injection);
-  /// The injection that inject() would add, or why it would refuse it. Whoever must note an injection before it takes
-  /// effect notes this one, and then adds it with inject_resolved(), which refuses nothing. inject() of its
-  /// specification, at the same step of an equal simulation, does the same.
+  /// The injection that inject() would add, or why it would refuse it. Whoever must note an
+  /// injection before it takes effect notes this one, and then adds it with inject_resolved(),
+  /// which refuses nothing. inject() of its specification, at the same step of an equal simulation,
+  /// does the same.
   absl::StatusOr<ResolvedInjection> resolve(const plan::InjectionSpec& injection) const;
   /// @pre  this simulation resolved it, and has neither taken a step nor an injection since
   void inject_resolved(const ResolvedInjection& injection);

@@ -27,24 +27,26 @@ struct ElementTotals {
   }
 };
 
-/// The hexahedra of a tissue in batches, and where in the system their numbers go. Positions and forces have four
-/// numbers a node here, a register each; the last has no meaning.
+/// The hexahedra of a tissue in batches, and where in the system their numbers go. Positions and
+/// forces have four numbers a node here, a register each; the last has no meaning.
 ///
-/// A batch takes hexahedra whose nodes are numbered in the same order, so that all lanes agree on which blocks are
-/// stored transposed; meshes in layers have one such order. Sums go batch by batch: they depend on the mesh alone.
-/// All is of Young's modulus 1 Pa; the moduli come with the call. About 4.2 kB a hexahedron.
+/// A batch takes hexahedra whose nodes are numbered in the same order, so that all lanes agree on
+/// which blocks are stored transposed; meshes in layers have one such order. Sums go batch by
+/// batch: they depend on the mesh alone. All is of Young's modulus 1 Pa; the moduli come with the
+/// call. About 4.2 kB a hexahedron.
 class ElementAssembler {
  public:
   /// The mesh and materials have been checked (tissue_checks.h).
   ElementAssembler(const HexMesh& mesh, const std::vector<ElasticMaterial>& materials, const SystemPattern& pattern);
 
-  /// Hands each hexahedron the Young's modulus of its material, in the order of the batches: what add and add_forces
-  /// take.
+  /// Hands each hexahedron the Young's modulus of its material, in the order of the batches: what
+  /// add and add_forces take.
   /// @param of_material  E [Pa], a value a material
   std::vector<double> spread_moduli(const HexMesh& mesh, const std::vector<double>& of_material) const;
 
-  /// Adds sum_e R K_e (R^T x - X) to `force` (4, n_nodes) and lists in `squeezed` the hexahedra that the inversion
-  /// barrier may have something to say about. Allocates nothing when that has room.
+  /// Adds sum_e R K_e (R^T x - X) to `force` (4, n_nodes) and lists in `squeezed` the hexahedra
+  /// that the inversion barrier may have something to say about. Allocates nothing when that has
+  /// room.
   ElementTotals add_forces(const std::vector<double>& moduli, const Eigen::Matrix4Xd& x, Eigen::Matrix4Xd& force,
                            std::vector<int>& squeezed) const;
   /// The same, the same bits, and adds sum_e R K_e R^T and K_G (geometric_stiffness.h) to `blocks`.

@@ -119,8 +119,9 @@ LIPOFILL_INLINE Lanes multiply(const Lanes* K, const Lanes (&q)[18], Lanes (&p)[
   return product;
 }
 
-/// A^T p, mode by mode and turned by R (E R where p is of 1 Pa): with M the symmetric matrix of p's first six and p_k those of the hourglasses,
-/// f_j = (M - skew(sum_k p_k S_k^T)) J_0^-T e_j/8 of the linear modes and f_k = p_k of the others.
+/// A^T p, mode by mode and turned by R (E R where p is of 1 Pa): with M the symmetric matrix of p's
+/// first six and p_k those of the hourglasses, f_j = (M - skew(sum_k p_k S_k^T)) J_0^-T e_j/8 of
+/// the linear modes and f_k = p_k of the others.
 LIPOFILL_INLINE void compute_modal_forces(const ElementBatch& batch, const LaneMatrix3& R, const Lanes (&p)[18],
                                           Point (&f)[8]) {
   const auto& S = batch.rest_hourglass;
@@ -164,8 +165,8 @@ LIPOFILL_INLINE void rotate_block(const LaneMatrix3& ER, const Lanes (&K)[9], co
   }
 }
 
-/// A block of the batch that comes next. Stores to so many places keep the processor from seeing by itself which
-/// numbers are read in order; without this the tangent takes half as long again.
+/// A block of the batch that comes next. Stores to so many places keep the processor from seeing by
+/// itself which numbers are read in order; without this the tangent takes half as long again.
 LIPOFILL_INLINE void prefetch(const Lanes* block) {
   for (int k = 0; k < 9; k += 2) __builtin_prefetch(block + k);
 }

@@ -26,7 +26,8 @@ Eigen::Matrix<double, 8, 8> hadamard_basis() {
 
 constexpr int kHourglass[4] = {3, 5, 6, 7};
 
-/// K_q = P^T K P with d = P q: d_b = sum_j h_j(b) G J e_j + 1/8 sum_k h_k(b) q_k, G the symmetric gradient.
+/// K_q = P^T K P with d = P q: d_b = sum_j h_j(b) G J e_j + 1/8 sum_k h_k(b) q_k, G the symmetric
+/// gradient.
 ModalMatrix compute_modal_stiffness(const Eigen::Matrix3d& jacobian, const HexStiffness& K) {
   static const Eigen::Matrix<double, 8, 8> h = hadamard_basis();
   Eigen::Matrix<double, 24, 18> P;

@@ -15,8 +15,8 @@ using StrainOperator = Eigen::Matrix<double, 6, 24>;
 ///     epsilon_ij = 1/2 (G_i . du/dxi_j + G_j . du/dxi_i)
 StrainOperator compute_covariant_strain_operator(const HexNodes& nodes, const LocalPoint& point);
 
-/// T with epsilon_cartesian = T epsilon_covariant, both in Voigt order with doubled shear, for the Jacobian J:
-/// epsilon_kl = dxi_i/dX_k dxi_j/dX_l epsilon_ij.
+/// T with epsilon_cartesian = T epsilon_covariant, both in Voigt order with doubled shear, for the
+/// Jacobian J: epsilon_kl = dxi_i/dX_k dxi_j/dX_l epsilon_ij.
 Eigen::Matrix<double, 6, 6> compute_strain_transform(const Eigen::Matrix3d& jacobian);
 
 /// Stiffness of a hexahedron with enhanced strains (Simo & Rifai 1990):
@@ -24,8 +24,8 @@ Eigen::Matrix<double, 6, 6> compute_strain_transform(const Eigen::Matrix3d& jaco
 ///     epsilon = T(J) Bcov(xi) u + det J0 / det J  T(J0) M(xi) alpha
 ///     K = Kuu - Kua Kaa^-1 Kau                             alpha condensed, J0 the Jacobian at the centre
 ///
-/// over 2 x 2 x 2 Gauss points. The columns of M integrate to zero over the cube, so a constant stress does no work in
-/// them.
+/// over 2 x 2 x 2 Gauss points. The columns of M integrate to zero over the cube, so a constant
+/// stress does no work in them.
 /// @param strain_operator  (point) -> Bcov (6, 24)
 /// @param enhanced_modes   (point) -> M (6, kModes), covariant
 template <int kModes, class StrainFunction, class ModesFunction>

@@ -5,14 +5,16 @@ namespace {
 
 /// Jacobi's method converges in three or four sweeps, the last of them quadratically.
 constexpr int kMaxSweeps = 8;
-/// Squares of the entries off the diagonal that are round-off, relative to the square of the matrix.
+/// Squares of the entries off the diagonal that are round-off, relative to the square of the
+/// matrix.
 constexpr double kOffDiagonal = 1e-32;
 constexpr double kTiny = 1e-300;
 
 /// Index of the entry (i, j) among (00, 11, 22, 01, 12, 20).
 constexpr int kEntry[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 
-/// Turns the plane (p, q) so that A_pq vanishes; r is the third direction, V collects the rotations.
+/// Turns the plane (p, q) so that A_pq vanishes; r is the third direction, V collects the
+/// rotations.
 LIPOFILL_INLINE void turn_plane(int p, int q, int r, Lanes (&A)[6], Lanes (&V)[3][3]) {
   Lanes& off = A[kEntry[p][q]];
   const Lanes difference = A[q] - A[p];

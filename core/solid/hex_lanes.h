@@ -7,10 +7,12 @@
 
 namespace lipofill::solid {
 
-// What batches of hexahedra have in common, whatever their law: how positions come from the nodes, how forces and
-// blocks of stiffness get back to them, and how nodes are turned into modes. Nodes are in binary order.
+// What batches of hexahedra have in common, whatever their law: how positions come from the nodes,
+// how forces and blocks of stiffness get back to them, and how nodes are turned into modes. Nodes
+// are in binary order.
 
-/// Modes of the nodes that are linear along one local coordinate, and those that are products of two or three.
+/// Modes of the nodes that are linear along one local coordinate, and those that are products of
+/// two or three.
 inline constexpr int kLinearModes[3] = {1, 2, 4};
 inline constexpr int kHourglassModes[4] = {3, 5, 6, 7};
 
@@ -49,7 +51,8 @@ LIPOFILL_INLINE void scatter_block(const Lanes (&K)[3][3], bool is_transposed, c
   }
 }
 
-/// Least over the corners of the determinant of the three edges that meet there, along the local coordinates.
+/// Least over the corners of the determinant of the three edges that meet there, along the local
+/// coordinates.
 LIPOFILL_INLINE Lanes find_least_corner(const Vector3<Lanes> (&x)[8]) {
   Vector3<Lanes> along[3][8];
   for (int k = 0; k < 3; ++k) {

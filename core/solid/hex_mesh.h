@@ -6,8 +6,8 @@
 
 namespace lipofill::solid {
 
-/// Hexahedra in their rest shape. Nodes 0-3 of a hexahedron are its deep face, 4-7 the face towards the skin, each
-/// anticlockwise seen from the skin: local coordinates (xi, eta, zeta) of node a are
+/// Hexahedra in their rest shape. Nodes 0-3 of a hexahedron are its deep face, 4-7 the face towards
+/// the skin, each anticlockwise seen from the skin: local coordinates (xi, eta, zeta) of node a are
 ///     (-,-,-) (+,-,-) (+,+,-) (-,+,-) (-,-,+) (+,-,+) (+,+,+) (-,+,+).
 /// zeta is the direction through the thickness, which the solid-shell element treats differently.
 struct HexMesh {

@@ -10,7 +10,8 @@ namespace {
 
 using Point = Vector3<Lanes>;
 
-/// Places in a hexahedron of its nodes in binary order: bit k for the side along local coordinate k.
+/// Places in a hexahedron of its nodes in binary order: bit k for the side along local coordinate
+/// k.
 constexpr int kCorner[8] = {0, 1, 3, 2, 4, 5, 7, 6};
 
 /// A vector of each lane and its squared length.

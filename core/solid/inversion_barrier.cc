@@ -9,8 +9,8 @@
 namespace lipofill::solid {
 namespace {
 
-/// The corner's node, then the ends of its edges along xi, eta and zeta, ordered so that the edges' determinant is
-/// positive.
+/// The corner's node, then the ends of its edges along xi, eta and zeta, ordered so that the edges'
+/// determinant is positive.
 constexpr int kCorners[8][4] = {{0, 1, 3, 4}, {1, 2, 0, 5}, {2, 3, 1, 6}, {3, 0, 2, 7},
                                 {4, 7, 5, 0}, {5, 4, 6, 1}, {6, 5, 7, 2}, {7, 6, 4, 3}};
 

@@ -22,11 +22,12 @@ struct ElasticMaterial {
   TissueLaw law = TissueLaw::kCorotational;
 };
 
-/// Adds a violation below `field` for each constant that is out of its bounds, not finite or not a number.
+/// Adds a violation below `field` for each constant that is out of its bounds, not finite or not a
+/// number.
 void check_material(std::string_view field, const ElasticMaterial& material, FieldViolations& violations);
 
-/// Stress of a strain in Voigt order (xx, yy, zz, xy, yz, zx), shear strains as engineering strains: sigma = D epsilon.
-/// [Pa]
+/// Stress of a strain in Voigt order (xx, yy, zz, xy, yz, zx), shear strains as engineering
+/// strains: sigma = D epsilon. [Pa]
 ///
 ///     D = lambda 1 (x) 1 + 2 mu I,   lambda = E nu / ((1 + nu)(1 - 2 nu)),   mu = E / (2 (1 + nu))
 ///

@@ -10,11 +10,13 @@ using Point = Vector3<Lanes>;
 
 constexpr double kThird = 1.0 / 3.0;
 constexpr double kNinth = 1.0 / 9.0;
-/// Newton's iteration on the cube root squares the error, so that a residual below this leaves round-off.
+/// Newton's iteration on the cube root squares the error, so that a residual below this leaves
+/// round-off.
 constexpr double kRootTolerance = 1e-8;
 constexpr int kMaxRootIterations = 40;
 
-/// J^-1/3 of J > 0 by Newton's iteration y <- y + y (1 - J y^3)/3; it converges from any y with J y^3 < 4.
+/// J^-1/3 of J > 0 by Newton's iteration y <- y + y (1 - J y^3)/3; it converges from any y with J
+/// y^3 < 4.
 LIPOFILL_INLINE Lanes compute_inverse_cube_root(const Lanes& J) {
   Lanes y = 3.0 / (2.0 + J);
   for (int k = 0; k < kMaxRootIterations; ++k) {

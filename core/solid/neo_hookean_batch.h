@@ -11,7 +11,8 @@ namespace lipofill::solid {
 
 /// The data of kLanes neo-Hookean hexahedra, all stacked or none.
 ///
-/// With h_k the products of local coordinates, s_k = sum_b h_k(b) x_b and S_k the same at rest, an element has
+/// With h_k the products of local coordinates, s_k = sum_b h_k(b) x_b and S_k the same at rest, an
+/// element has
 ///
 ///     F = sum_k s_k (x) B_k,   B_k = 1/V dV/dS_k       mean gradient over the element (Flanagan & Belytschko 1981)
 ///     v(s)                                             its volume, exact for the trilinear hexahedron
@@ -22,11 +23,12 @@ namespace lipofill::solid {
 ///
 ///     W = V (mu/2 (J^-2/3 |F|^2 - 3) + kappa/2 (v/V - 1)^2) + W_h(w, g),   J = det F
 ///
-/// the law of CalculiX' and Abaqus' *HYPERELASTIC, NEO HOOKE. The volume is that of the hexahedron itself, so that
-/// tissue keeps what one sees of it. W_h is the solid-shell's in closed form: assumed natural strains and the seven
-/// enhanced ones condensed on the deformed parallelepiped, isotropic there with the moduli mu and lambda, which is the
-/// second-order term of the law about F for nearly incompressible tissue (after Puso 2000 and Schwarze & Reese 2011).
-/// With e the symmetric part and per unit of the rest volume
+/// the law of CalculiX' and Abaqus' *HYPERELASTIC, NEO HOOKE. The volume is that of the hexahedron
+/// itself, so that tissue keeps what one sees of it. W_h is the solid-shell's in closed form:
+/// assumed natural strains and the seven enhanced ones condensed on the deformed parallelepiped,
+/// isotropic there with the moduli mu and lambda, which is the second-order term of the law about F
+/// for nearly incompressible tissue (after Puso 2000 and Schwarze & Reese 2011). With e the
+/// symmetric part and per unit of the rest volume
 ///
 ///     xi:    1/3 Psi(e(w_3 (x) g^2 + w_5 (x) g^3)), sigma g^1 = 0
 ///     eta:   1/3 Psi(e(w_3 (x) g^1 + w_6 (x) g^3)), sigma g^2 = 0
@@ -35,14 +37,17 @@ namespace lipofill::solid {
 ///
 ///     Psi(e) = mu |e|^2 + lambda/2 tr(e)^2 in what the conditions leave free,  lambda* = 2 lambda mu/(lambda + 2 mu)
 ///
-/// The shear strains along zeta keep their part that varies through the thickness (tied at the edges of both faces, as
-/// in Schwarze & Reese): without it an element narrower than thick has a soft mode of its thickness.
+/// The shear strains along zeta keep their part that varies through the thickness (tied at the
+/// edges of both faces, as in Schwarze & Reese): without it an element narrower than thick has a
+/// soft mode of its thickness.
 ///
-/// Homogeneous states have w = 0 exactly, so every patch test holds for every shape. Nothing locks at nu = 0.5: each
-/// element has one volume, and what is not homogeneous is free of it. Energy and forces are functions of x alone, the
-/// force is the exact slope of the energy, and turning x turns the force. Below J = kLeastRatio the law goes on as a
-/// parabola in J: forces stay finite in elements that are inside out.
-/// Checked by tests/unit/solid/neo_hookean_test.cc and tests/verification/solid/neo_hookean_*_test.cc.
+/// Homogeneous states have w = 0 exactly, so every patch test holds for every shape. Nothing locks
+/// at nu = 0.5: each element has one volume, and what is not homogeneous is free of it. Energy and
+/// forces are functions of x alone, the force is the exact slope of the energy, and turning x turns
+/// the force. Below J = kLeastRatio the law goes on as a parabola in J: forces stay finite in
+/// elements that are inside out.
+/// Checked by tests/unit/solid/neo_hookean_test.cc and
+/// tests/verification/solid/neo_hookean_*_test.cc.
 struct NeoHookeanBatch {
   static constexpr double kLeastRatio = 0.05;  ///< of J
 
@@ -86,10 +91,11 @@ void add_neo_hookean_forces(const NeoHookeanBatch& batch, const Lanes& modulus, 
 ///
 ///     V (2 mu' dev e : dev e + grad u (tau - c I)+ grad u^T) + kappa V (dv/V)^2 + W_h with g held
 ///
-/// with tau = mu dev(J^-2/3 F F^T) + kappa v/V (v/V - 1) I the Kirchhoff stress. c grad u : grad u^T integrates to what
-/// happens on the boundary alone, so any c may be taken from tau and put on mu' = mu J^-2/3 |F|^2/3 - kappa v/V (v/V - 1)
-/// + c. c is the value nearest to zero among the principal stresses' range: mu' then lies between the least and the
-/// largest eigenvalue of mu J^-2/3 F F^T. At rest it is the slope of the force, elsewhere off by a share of the strain.
+/// with tau = mu dev(J^-2/3 F F^T) + kappa v/V (v/V - 1) I the Kirchhoff stress. c grad u : grad
+/// u^T integrates to what happens on the boundary alone, so any c may be taken from tau and put on
+/// mu' = mu J^-2/3 |F|^2/3 - kappa v/V (v/V - 1) + c. c is the value nearest to zero among the
+/// principal stresses' range: mu' then lies between the least and the largest eigenvalue of mu
+/// J^-2/3 F F^T. At rest it is the slope of the force, elsewhere off by a share of the strain.
 void add_neo_hookean_stiffness(const NeoHookeanBatch& batch, const NeoHookeanPose& pose, double* blocks);
 
 }  // namespace lipofill::solid

@@ -4,8 +4,9 @@
 
 namespace lipofill::solid {
 
-// The closed forms of which the energy of a neo-Hookean hexahedron is made (neo_hookean_batch.h), of several elements
-// side by side. Every function returns an energy and adds its slopes by all its arguments.
+// The closed forms of which the energy of a neo-Hookean hexahedron is made (neo_hookean_batch.h),
+// of several elements side by side. Every function returns an energy and adds its slopes by all its
+// arguments.
 
 /// Symmetric tensors: entries 00, 11, 22, 01, 12, 20.
 struct SymmetricTensor {
@@ -60,7 +61,8 @@ LIPOFILL_INLINE Lanes compute_square(const SymmetricTensor& A) {
   return multiply_add(fill_lanes(2.0), off, diagonal);
 }
 
-/// sigma = 2 mu e + lambda tr (I - n n^T); returns the energy. `e` has no part along n that does work.
+/// sigma = 2 mu e + lambda tr (I - n n^T); returns the energy. `e` has no part along n that does
+/// work.
 LIPOFILL_INLINE Lanes add_slopes_of_strain(const Moduli& moduli, const SymmetricTensor& e, const Lanes& trace,
                                            const Lanes& inverse_square, const StrainPair& of,
                                            const StrainPairSlopes& slopes, SymmetricTensor& stress) {

@@ -51,7 +51,8 @@ LIPOFILL_INLINE void add_plane_product(const Moduli& moduli, const Point& p, con
   add_product(-moduli.mu * inverse * dot(in_p, in_q), n, n, K);
 }
 
-/// Second slopes of neo_hookean_modes.h's add_plane_stress by the modes u and v; K[2 i + j]: mode i by mode j.
+/// Second slopes of neo_hookean_modes.h's add_plane_stress by the modes u and v; K[2 i + j]: mode i
+/// by mode j.
 LIPOFILL_INLINE void add_plane_stress_tangent(const Moduli& moduli, const StrainPair& of, Block& uu, Block& uv,
                                               Block& vu, Block& vv) {
   const Lanes inverse = 1.0 / dot(of.normal, of.normal);

@@ -14,8 +14,8 @@ struct BlockColumn {
   Lanes geometric;
 };
 
-/// Three values at once; the fourth that is written along is overwritten by the next, since places ascend and the last
-/// column of all has one value only.
+/// Three values at once; the fourth that is written along is overwritten by the next, since places
+/// ascend and the last column of all has one value only.
 LIPOFILL_INLINE int write_whole(const BlockColumn& column, double factor, double* stiffness, double* system) {
   const Lanes k = load(column.k);
   store(k, stiffness);

@@ -6,9 +6,9 @@
 
 namespace lipofill::solid {
 
-/// Values of the lower triangle by blocks of two nodes, four numbers a column: three of K, and behind the first column
-/// what K_G has on the block's diagonal (number times I). So a hexahedron adds its matrix in whole registers, 108 of
-/// them instead of 324 numbers.
+/// Values of the lower triangle by blocks of two nodes, four numbers a column: three of K, and
+/// behind the first column what K_G has on the block's diagonal (number times I). So a hexahedron
+/// adds its matrix in whole registers, 108 of them instead of 324 numbers.
 class NodeBlocks {
  public:
   explicit NodeBlocks(const SystemPattern& pattern) : values_(12, pattern.n_blocks() + 1) {}
@@ -26,7 +26,8 @@ class NodeBlocks {
   Eigen::Matrix<double, 12, Eigen::Dynamic> values_;
 };
 
-/// Values of K and of S = factor K + K_G, to which single contributions are added where they belong.
+/// Values of K and of S = factor K + K_G, to which single contributions are added where they
+/// belong.
 struct TangentValues {
   double* stiffness;
   double* system;

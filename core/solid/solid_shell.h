@@ -13,7 +13,8 @@ namespace lipofill::solid {
 ///   - seven enhanced modes, 11: xi, 22: eta, 33: zeta, xi zeta, eta zeta, 12: xi, eta (EAS-7: no
 ///     membrane, thickness or volumetric locking).
 ///
-/// Passes membrane and bending patch tests on meshes distorted in the plane. zeta is the thickness direction. [N/m]
+/// Passes membrane and bending patch tests on meshes distorted in the plane. zeta is the thickness
+/// direction. [N/m]
 /// @param nodes       rest positions [m], positive Jacobian
 /// @param elasticity  D of compute_elasticity_matrix [Pa]
 /// Checked by tests/unit/solid/element_test.cc, tests/verification/solid/.

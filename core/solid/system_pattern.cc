@@ -6,7 +6,8 @@
 namespace lipofill::solid {
 namespace {
 
-/// The groups that each node is in, one list after the other: those of node a are [start[a], start[a + 1]).
+/// The groups that each node is in, one list after the other: those of node a are [start[a],
+/// start[a + 1]).
 struct GroupsOfNodes {
   std::vector<int> start, group;
 };

@@ -7,9 +7,10 @@
 
 namespace lipofill::solid {
 
-/// Numbering of the degrees of freedom and the lower triangle they couple in: node by node, fixed components left out,
-/// every two nodes of a hexahedron coupled, and every two of a group. Depends on its arguments only; time and memory
-/// linear in the hexahedra. Checked by tests/unit/solid/element_batch_test.cc.
+/// Numbering of the degrees of freedom and the lower triangle they couple in: node by node, fixed
+/// components left out, every two nodes of a hexahedron coupled, and every two of a group. Depends
+/// on its arguments only; time and memory linear in the hexahedra. Checked by
+/// tests/unit/solid/element_batch_test.cc.
 class SystemPattern {
  public:
   SystemPattern(int n_nodes, const std::vector<std::array<int, 8>>& hexahedra,
@@ -30,8 +31,9 @@ class SystemPattern {
   /// hexahedron or a group.
   int find(int i, int j) const;
 
-  /// The triangle in blocks, one a pair of coupled nodes with free components: those of node b's columns are
-  /// [block_starts()[b], block_starts()[b + 1]), its own first, and belong to the rows of block_rows(), ascending.
+  /// The triangle in blocks, one a pair of coupled nodes with free components: those of node b's
+  /// columns are [block_starts()[b], block_starts()[b + 1]), its own first, and belong to the rows
+  /// of block_rows(), ascending.
   int n_blocks() const { return static_cast<int>(block_rows_.size()); }
   const std::vector<int>& block_starts() const { return block_starts_; }
   const std::vector<int>& block_rows() const { return block_rows_; }

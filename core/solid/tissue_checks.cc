@@ -41,7 +41,8 @@ void check_indices(const HexMesh& mesh, int n_materials, FieldViolations& violat
   }
 }
 
-/// A node of no hexahedron has neither mass nor stiffness: S would be singular, unless the node is held.
+/// A node of no hexahedron has neither mass nor stiffness: S would be singular, unless the node is
+/// held.
 void check_nodes(const HexMesh& mesh, const NodeSupports& supports, FieldViolations& violations) {
   std::vector<bool> used(mesh.n_nodes(), false);
   for (const auto& hexahedron : mesh.hexahedra) {

@@ -23,9 +23,10 @@ struct NodeSupports {
   std::vector<double> spring;              ///< isotropic spring to the rest position, a value a node [N/m]; empty: none
 };
 
-/// The parts of a tissue that never change: its mesh, numbering, element matrices and springs. Young's moduli do
-/// change: element matrices are of 1 Pa, and each tissue multiplies them by its own. Tissues share a structure
-/// (tissue.h); nothing in it is written once it is made, so threads may.
+/// The parts of a tissue that never change: its mesh, numbering, element matrices and springs.
+/// Young's moduli do change: element matrices are of 1 Pa, and each tissue multiplies them by its
+/// own. Tissues share a structure (tissue.h); nothing in it is written once it is made, so threads
+/// may.
 class TissueStructure {
  public:
   /// Creates the structure. INVALID_ARGUMENT with a violation each for sizes that disagree, a node

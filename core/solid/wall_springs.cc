@@ -8,10 +8,12 @@ namespace {
 
 /// Rest lengths below this share of the tissue's extent are round-off of walls that touch.
 constexpr double kTouchingShare = 1e-9;
-/// A spring this near to its length counts as taut in the tangent, so that round-off at rest decides nothing.
+/// A spring this near to its length counts as taut in the tangent, so that round-off at rest
+/// decides nothing.
 constexpr double kTautShare = 1.0 - 1e-9;
 
-/// Coefficients of the nodes in d = x_outer - x_inner, nodes ascending, those of weight zero left out.
+/// Coefficients of the nodes in d = x_outer - x_inner, nodes ascending, those of weight zero left
+/// out.
 std::map<int, double> collect_coefficients(const WallSpring& spring) {
   std::map<int, double> coefficients;
   for (int k = 0; k < 4; ++k) {

@@ -10,8 +10,8 @@
 
 namespace lipofill::solid {
 
-/// A spring between two points of the tissue, each the weighted mean of four nodes (weights 1, 0, 0, 0: one node).
-/// The nodes need not share a hexahedron: springs span films.
+/// A spring between two points of the tissue, each the weighted mean of four nodes (weights 1, 0,
+/// 0, 0: one node). The nodes need not share a hexahedron: springs span films.
 struct WallSpring {
   std::array<int, 4> outer;
   std::array<int, 4> inner;
@@ -20,7 +20,8 @@ struct WallSpring {
   double slack = 0.0;            ///< [m] >= 0
 };
 
-/// Groups of nodes that springs couple with one another: those of each spring whose weight is not zero.
+/// Groups of nodes that springs couple with one another: those of each spring whose weight is not
+/// zero.
 std::vector<std::vector<int>> collect_coupled_nodes(const std::vector<WallSpring>& springs);
 
 /// The part of a spring that changes.
@@ -46,8 +47,9 @@ class WallSprings {
   /// The springs have been checked (tissue_checks.h); their nodes are coupled in `pattern`.
   WallSprings(const std::vector<WallSpring>& springs, const Eigen::Matrix3Xd& rest, const SystemPattern& pattern);
 
-  /// Brings tension and length of each spring to the positions `x` and adds what they pull to `force`; returns the
-  /// energy [J]. Both have four numbers a node, the last of no meaning. Allocates nothing, as does add_tangent.
+  /// Brings tension and length of each spring to the positions `x` and adds what they pull to
+  /// `force`; returns the energy [J]. Both have four numbers a node, the last of no meaning.
+  /// Allocates nothing, as does add_tangent.
   double add_force(const Eigen::Matrix4Xd& x, std::vector<WallSpringState>& states, Eigen::Matrix4Xd& force) const;
   /// Adds K and K_G at the positions of the last add_force.
   void add_tangent(const Eigen::Matrix4Xd& x, const std::vector<WallSpringState>& states, TangentValues& values) const;

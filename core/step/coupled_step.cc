@@ -15,8 +15,8 @@ using mechanics::PhaseTimer;
 using mechanics::SimulationState;
 
 constexpr int kMaxNewtonIterations = 16;
-/// Forces out of balance over forces in balance, after an iteration with a factor of earlier positions; and after one
-/// with a factor of its own, whose error is of second order.
+/// Forces out of balance over forces in balance, after an iteration with a factor of earlier
+/// positions; and after one with a factor of its own, whose error is of second order.
 constexpr double kForceTolerance = 1e-3;
 constexpr double kPromptForceTolerance = 1e-2;
 /// An iteration that leaves more of the error than this calls for a new factor.
@@ -28,9 +28,9 @@ constexpr double kGapTolerance = 2e-5;
 
 constexpr const char* kNotDefinite = "the tissue's stiffness is not positive definite";
 
-/// Memory of the factor with what making it takes, of matrices with their scatter maps, and of the vectors of steps,
-/// states and frames. Measured: 22 MB a simulation of jaw_angle, reckoned 24; 150 MB at four times its size, reckoned
-/// 124.
+/// Memory of the factor with what making it takes, of matrices with their scatter maps, and of the
+/// vectors of steps, states and frames. Measured: 22 MB a simulation of jaw_angle, reckoned 24; 150
+/// MB at four times its size, reckoned 124.
 constexpr uint64_t kBytesAFactorValue = 8;
 constexpr uint64_t kBytesAValue = 24;
 constexpr uint64_t kBytesADof = 600;
@@ -126,7 +126,8 @@ bool CoupledStep::solve_tissue_and_films(const SimulationState& from, double dt,
     if (!solve_films(outcome)) return false;
     if (!move_tissue(from, dt, outcome)) return false;
     const double error = measure_error(force_tolerance, outcome);
-    // The barrier against elements turned inside out (solid/inversion_barrier.h) drives folded ones back.
+    // The barrier against elements turned inside out (solid/inversion_barrier.h) drives folded ones
+    // back.
     if (error <= 1.0 && outcome.min_scaled_jacobian > 0.0) {
       outcome.state.late_iterations += std::max(0, outcome.newton_iterations - kPromptIterations);
       return true;
@@ -199,7 +200,8 @@ bool CoupledStep::is_late(const StepOutcome& outcome) const {
   return factor_ && factor_->is_late(outcome.state.positions);
 }
 
-/// Finds the rest volume, walls of their own apart, and on tissue the gap to which the forces alone would bring it.
+/// Finds the rest volume, walls of their own apart, and on tissue the gap to which the forces alone
+/// would bring it.
 void CoupledStep::find_gap_without_pressure() {
   Iteration& now = iteration_;
   now.gap_without_pressure = films_->walls().rest_volume();

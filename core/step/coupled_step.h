@@ -35,12 +35,13 @@ struct StepOutcome {
 ///     S dx - B^T p = f                 tissue: S = M/dt^2 + D/dt + K at the positions x
 ///     B dx + dt J p = d                films:  d = V + injected - outflow at zero pressure - rest - g(x)
 ///
-/// with J the tangent of the fat's flow law and p not below the suction limit (film_solve.h), repeated from the new
-/// positions (Newton) until forces balance to kForceTolerance and the gap holds the film's volume to kGapTolerance.
-/// The mismatch that is left enters the next step's d: it cannot accumulate.
+/// with J the tangent of the fat's flow law and p not below the suction limit (film_solve.h),
+/// repeated from the new positions (Newton) until forces balance to kForceTolerance and the gap
+/// holds the film's volume to kGapTolerance. The mismatch that is left enters the next step's d: it
+/// cannot accumulate.
 ///
-/// S, B and C on the left may be those of earlier positions (held_factor.h): only the right sides decide where the
-/// iteration ends,
+/// S, B and C on the left may be those of earlier positions (held_factor.h): only the right sides
+/// decide where the iteration ends,
 ///
 ///     S0 dx - B0^T p' = f(x) + (B(x) - B0)^T p
 ///     B0 dx + J p'    = d(x)
@@ -59,7 +60,8 @@ class CoupledStep {
   absl::Status open_to_initial_thickness(mechanics::SimulationState& state);
 
   /// @param injected  volume into each cell of each film [m3]
-  /// @param outcome   what came of it; the memory of an earlier one is used again, so that steps allocate nothing
+  /// @param outcome   what came of it; the memory of an earlier one is used again, so that steps
+  ///                  allocate nothing
   void try_step(const mechanics::SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt,
                 StepOutcome& outcome);
   /// Figures of a state that does not come from try_step: gap, void, energies, springs.

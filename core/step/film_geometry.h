@@ -8,8 +8,8 @@
 
 namespace lipofill::step {
 
-/// The mid-surfaces of the films: at rest, and where the tissue's walls are. Films with walls of their own lie on the
-/// undeformed skin and stay there.
+/// The mid-surfaces of the films: at rest, and where the tissue's walls are. Films with walls of
+/// their own lie on the undeformed skin and stay there.
 class FilmGeometry {
  public:
   /// @param system  null without tissue; what is passed here outlives the geometry

@@ -9,7 +9,8 @@
 
 namespace lipofill::step {
 
-/// Moves the fat of one film by viscosity and advection alone: the velocity that the pressure then corrects.
+/// Moves the fat of one film by viscosity and advection alone: the velocity that the pressure then
+/// corrects.
 /// Checked by tests/unit/film/motion_test.cc and tests/verification/film/.
 class FilmMotion {
  public:

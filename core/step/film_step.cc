@@ -8,7 +8,8 @@
 namespace lipofill::step {
 namespace {
 
-/// Fat thinner than this seeps through a leaky wall in proportion to its thickness, so that no cell is drained [m].
+/// Fat thinner than this seeps through a leaky wall in proportion to its thickness, so that no cell
+/// is drained [m].
 constexpr double kLeakFullThickness = 0.01e-3;
 /// Iterations of conjugate gradients that a solve with an up-to-date preconditioner would need too.
 constexpr int kPromptPressureIterations = 2;
@@ -152,15 +153,16 @@ bool FilmStep::solve(const Eigen::VectorXd& gap_without_pressure, mechanics::Sim
   return solution.converged;
 }
 
-/// On tissue a step is solved again from new positions, so that its films need be no more exact than that.
+/// On tissue a step is solved again from new positions, so that its films need be no more exact
+/// than that.
 coupling::FilmTolerance FilmStep::tolerance() const {
   if (cells_.on_tissue.empty()) return {};
   if (walls_.is_implicit()) return {1e-5, 1e-6};
   return {1e-7, 1e-8};
 }
 
-/// Finds the limit of each cell; there is none where no plan gives one. Cells that fat has not entered are held
-/// together by tissue, and rigid walls keep whatever pressure there is.
+/// Finds the limit of each cell; there is none where no plan gives one. Cells that fat has not
+/// entered are held together by tissue, and rigid walls keep whatever pressure there is.
 void FilmStep::find_lowest_pressure(const mechanics::SimulationState& state, Eigen::VectorXd& lowest) const {
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   if (-suction_limit_ == kNone) return;

@@ -19,8 +19,8 @@ namespace lipofill::step {
 /// The fat that all films of a simulation hold.
 film::Fat make_fat(const plan::SimulationSpec& spec);
 
-/// The films' side of a coupled step: forces, viscosity and advection first (begin), then the pressure that makes each
-/// film fill its gap (solve), in the end the films' new state (finish).
+/// The films' side of a coupled step: forces, viscosity and advection first (begin), then the
+/// pressure that makes each film fill its gap (solve), in the end the films' new state (finish).
 /// Checked by tests/unit/step/film_step_test.cc and tests/verification/film/.
 class FilmStep {
  public:
@@ -37,13 +37,14 @@ class FilmStep {
   LaggedMobility& mobility() { return *mobility_; }
   const WallResponse& walls() const { return walls_; }
 
-  /// Takes the velocity, the body forces and the sources of a step of `dt` [s] from a state. Cells that are injected
-  /// into count as entered from now on: the cannula parts the tissue where it delivers.
+  /// Takes the velocity, the body forces and the sources of a step of `dt` [s] from a state. Cells
+  /// that are injected into count as entered from now on: the cannula parts the tissue where it
+  /// delivers.
   void begin(const std::vector<Eigen::VectorXd>& injected, double dt, mechanics::SimulationState& state);
   /// Starts from the fluxes of the last step.
   void set_start_flux(const mechanics::SimulationState& from, coupling::FilmSolution& start) const;
-  /// Solves for the pressure with which the films fill their gaps, and counts what that takes. False: the film does
-  /// not converge.
+  /// Solves for the pressure with which the films fill their gaps, and counts what that takes.
+  /// False: the film does not converge.
   /// @param gap_without_pressure  [m3] (n cells)
   /// @param state                 counts iterations that up-to-date mobilities would have saved
   bool solve(const Eigen::VectorXd& gap_without_pressure, mechanics::SimulationState& state,

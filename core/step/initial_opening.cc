@@ -44,7 +44,8 @@ bool open_by_products(coupling::CoupledFactor& factor, const Eigen::VectorXd& op
   return false;
 }
 
-/// Newton iterations on equilibrium with every cell holding `target`; false when they do not converge.
+/// Newton iterations on equilibrium with every cell holding `target`; false when they do not
+/// converge.
 bool open_to(const Opening& opening, const Eigen::VectorXd& target, double tolerance, mechanics::SimulationState& state,
              Eigen::VectorXd& pressure) {
   mechanics::TissueSystem& system = *opening.system;

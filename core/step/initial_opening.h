@@ -20,8 +20,9 @@ struct Opening {
   ResidualForce* forces;
 };
 
-/// Fills the films to their initial thickness and finds the equilibrium with every cell on tissue holding its volume,
-/// by load stepping. INVALID_ARGUMENT with the field "films" when the tissue does not come to rest.
+/// Fills the films to their initial thickness and finds the equilibrium with every cell on tissue
+/// holding its volume, by load stepping. INVALID_ARGUMENT with the field "films" when the tissue
+/// does not come to rest.
 absl::Status open_to_initial_thickness(const Opening& opening, mechanics::SimulationState& state);
 
 }  // namespace lipofill::step

@@ -8,9 +8,10 @@
 
 namespace lipofill::step {
 
-/// The mobilities dt J that the pressures of many cells are preconditioned with. They stay from step to step until
-/// up-to-date ones would have saved as many iterations as they cost; the state holds them, so that a restored
-/// simulation goes on with the same bits (FilmState::factored_mobility).
+/// The mobilities dt J that the pressures of many cells are preconditioned with. They stay from
+/// step to step until up-to-date ones would have saved as many iterations as they cost; the state
+/// holds them, so that a restored simulation goes on with the same bits
+/// (FilmState::factored_mobility).
 class LaggedMobility {
  public:
   /// @param is_used  whether solves with these walls need it at all

@@ -3,7 +3,8 @@
 namespace lipofill::step {
 namespace {
 
-/// Equal steps after which films are carried on along a parabola: before that, not all began in the same way.
+/// Equal steps after which films are carried on along a parabola: before that, not all began in the
+/// same way.
 constexpr int kStepsOfACurve = 3;
 
 }  // namespace
@@ -29,7 +30,8 @@ void Predictor::predict_films(const mechanics::SimulationState& from, double dt,
   start.volume = (start.volume + dt * rate_).cwiseMax(0.0);
 }
 
-/// Takes each cell to change as it did in the last step or, after steps of this size, as the change itself changed.
+/// Takes each cell to change as it did in the last step or, after steps of this size, as the change
+/// itself changed.
 void Predictor::predict_rate(const mechanics::SimulationState& from, double dt,
                              Eigen::VectorXd mechanics::FilmState::*last,
                              Eigen::VectorXd mechanics::FilmState::*before) {

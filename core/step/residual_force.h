@@ -7,8 +7,8 @@
 
 namespace lipofill::step {
 
-/// The forces of an implicit Euler step that are out of balance, a value a degree of freedom [N]. Internal forces are
-/// those that the system was last brought to.
+/// The forces of an implicit Euler step that are out of balance, a value a degree of freedom [N].
+/// Internal forces are those that the system was last brought to.
 /// Checked by tests/unit/step/residual_force_test.cc.
 class ResidualForce {
  public:
@@ -20,7 +20,8 @@ class ResidualForce {
   /// @param from  x_n and v_n
   /// @param x     positions [m] (3, n_nodes)
   void compute(const mechanics::SimulationState& from, const Eigen::Matrix3Xd& x, double dt, Eigen::VectorXd& force);
-  /// f += (B - B0)^T p, which a factor with the derivative B0 of earlier positions does not know of.
+  /// f += (B - B0)^T p, which a factor with the derivative B0 of earlier positions does not know
+  /// of.
   void add_coupling(const Eigen::SparseMatrix<double>& earlier_derivative, const Eigen::VectorXd& pressure,
                     Eigen::VectorXd& force);
   /// |f + B^T p| over the forces in balance.

@@ -7,8 +7,8 @@
 namespace lipofill::step {
 namespace {
 
-/// C has negative entries on curved layers; a lumped cell keeps at least this share of its own compliance, so that J +
-/// R stays definite.
+/// C has negative entries on curved layers; a lumped cell keeps at least this share of its own
+/// compliance, so that J + R stays definite.
 constexpr double kLeastOwnShare = 1e-3;
 
 }  // namespace

@@ -10,8 +10,9 @@
 
 namespace lipofill::step {
 
-/// The response of the walls of all films to pressure, in the order of all cells: gap = rest + C p. Cells on tissue take
-/// their C from its factor, those on Winkler walls a/k, those between rigid walls 0.
+/// The response of the walls of all films to pressure, in the order of all cells: gap = rest + C p.
+/// Cells on tissue take their C from its factor, those on Winkler walls a/k, those between rigid
+/// walls 0.
 class WallResponse {
  public:
   /// @param factor  null without tissue; what is passed here outlives the response
@@ -28,8 +29,8 @@ class WallResponse {
   const Eigen::VectorXd& rest_volume() const { return rest_volume_; }
   /// Rest + C p of the cells that have walls of their own, rest of the others [m3] (n cells).
   void compute_gap_of_own_walls(const Eigen::VectorXd& pressure, Eigen::VectorXd& gap) const;
-  /// Sum over cells of |gap - fat - void| over the films' volume; under LUMPED, which conserves the sum alone, of the
-  /// sum.
+  /// Sum over cells of |gap - fat - void| over the films' volume; under LUMPED, which conserves the
+  /// sum alone, of the sum.
   double relative_gap_error(const Eigen::VectorXd& gap, const coupling::FilmSolution& solution) const;
 
  private:

@@ -17,8 +17,8 @@ struct KeptMessages {
   EncodedMessages frame;
 };
 
-/// Results from the store as viewers see them. Those who ask for the same share the messages while one of them is being
-/// sent any: viewers who do not read cost no memory of their own. Thread-safe.
+/// Results from the store as viewers see them. Those who ask for the same share the messages while
+/// one of them is being sent any: viewers who do not read cost no memory of their own. Thread-safe.
 /// Checked by tests/unit/server/backend/kept_result_test.cc.
 class KeptResults {
  public:

@@ -21,7 +21,8 @@ absl::StatusOr<ScanIds> scans_of(const std::string& patient, const v1::ModelSpec
 /// Reads the surfaces of the scans into a specification. Field violations relative to its message.
 absl::Status read_scans(Backend& backend, const std::string& patient, const ScanIds& scans, model::FaceModelSpec& spec);
 
-/// A specification in SI, with the surfaces of its scans read. Field violations relative to the message.
+/// A specification in SI, with the surfaces of its scans read. Field violations relative to the
+/// message.
 absl::StatusOr<model::FaceModelSpec> read_model_spec(Backend& backend, const std::string& patient,
                                                      const v1::ModelSpec& message);
 

@@ -12,8 +12,8 @@
 
 namespace lipofill::server {
 
-/// Meshes and fields, streamed. The raw callback method lets all viewers share one serialised slice.
-/// See proto/lipofill/v1/frame_service.proto.
+/// Meshes and fields, streamed. The raw callback method lets all viewers share one serialised
+/// slice. See proto/lipofill/v1/frame_service.proto.
 class FrameService : public v1::FrameService::WithRawCallbackMethod_Watch<
                          v1::FrameService::WithCallbackMethod_AcknowledgeFrame<v1::FrameService::Service>> {
  public:

@@ -13,8 +13,8 @@
 
 namespace lipofill::server {
 
-/// The messages of one Watch that wait to be written. They share their bytes with those of other viewers of the same
-/// selection. For one thread at a time.
+/// The messages of one Watch that wait to be written. They share their bytes with those of other
+/// viewers of the same selection. For one thread at a time.
 ///
 /// Checked by tests/unit/server/frames/outgoing_messages_test.cc.
 class OutgoingMessages {

@@ -6,7 +6,8 @@
 
 namespace lipofill::server {
 
-/// When a stream sends a heartbeat, and when it must end. It asks for one alarm at a time, to be woken then.
+/// When a stream sends a heartbeat, and when it must end. It asks for one alarm at a time, to be
+/// woken then.
 ///
 /// Checked by tests/unit/server/frames/stream_clock_test.cc.
 class StreamClock {
@@ -23,7 +24,8 @@ class StreamClock {
   void note_sent(Time now) { last_sent_ = now; }
   bool heartbeat_is_due(Time now) const { return now >= last_sent_ + heartbeat_; }
 
-  /// The time of a new alarm, for the heartbeat or the end; nothing where one is set that has not come.
+  /// The time of a new alarm, for the heartbeat or the end; nothing where one is set that has not
+  /// come.
   std::optional<Time> set_alarm() {
     if (alarm_) return std::nullopt;
     alarm_ = std::min(last_sent_ + heartbeat_, end_);

@@ -78,7 +78,8 @@ void WatchStream::OnDone() {
   const std::shared_ptr<WatchStream> last = std::move(self_);
 }
 
-// One write is under way at a time, and Finish comes once: after the last write, also when the client has gone.
+// One write is under way at a time, and Finish comes once: after the last write, also when the
+// client has gone.
 void WatchStream::advance(std::unique_lock<std::mutex> lock) {
   if (writing_ || finished_) return;
   if (cancelled_) {

@@ -19,8 +19,8 @@
 
 namespace lipofill::server {
 
-/// The server's side of one Watch: takes what its viewer holds and writes it, one message at a time, as fast as the
-/// client reads, or a heartbeat (StreamClock) where there is nothing.
+/// The server's side of one Watch: takes what its viewer holds and writes it, one message at a
+/// time, as fast as the client reads, or a heartbeat (StreamClock) where there is nothing.
 ///
 /// It keeps itself alive from begin() until gRPC is done with it.
 class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
@@ -35,8 +35,9 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
   /// Sets the time at which the stream ends with UNAUTHENTICATED; to be called before it begins.
   void end_at(Courier::Clock::time_point time) { clock_.set_end(time); }
 
-  /// A stream that shows what a session puts into the viewer, and a heartbeat where that was nothing for so long.
-  /// `on_done` is called once, at the end. False, and nothing is shown, when the client left while it was held.
+  /// A stream that shows what a session puts into the viewer, and a heartbeat where that was
+  /// nothing for so long. `on_done` is called once, at the end. False, and nothing is shown, when
+  /// the client left while it was held.
   [[nodiscard]] bool begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat,
                            std::function<void()> on_done);
   /// Keeps it, for a begin that comes later from another thread.

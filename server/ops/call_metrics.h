@@ -14,8 +14,8 @@ struct MethodMetrics {
   prometheus::Histogram& seconds;
 };
 
-/// Calls by method. Methods are those of registered services, so that there is a bounded number of them. Checked by
-/// tests/unit/server/ops/metrics_test.cc.
+/// Calls by method. Methods are those of registered services, so that there is a bounded number of
+/// them. Checked by tests/unit/server/ops/metrics_test.cc.
 class CallMetrics {
  public:
   explicit CallMetrics(prometheus::Registry& registry);

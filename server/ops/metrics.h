@@ -12,9 +12,9 @@
 
 namespace lipofill::server {
 
-/// Everything the daemon counts, in the names and units of Prometheus (seconds, bytes, _total of what only grows).
-/// Calls are thread-safe and cheap enough for every step and every message. Checked by
-/// tests/unit/server/ops/metrics_test.cc and tests/integration/service/metrics_test.cc.
+/// Everything the daemon counts, in the names and units of Prometheus (seconds, bytes, _total of
+/// what only grows). Calls are thread-safe and cheap enough for every step and every message.
+/// Checked by tests/unit/server/ops/metrics_test.cc and tests/integration/service/metrics_test.cc.
 class Metrics {
  public:
   Metrics() = default;

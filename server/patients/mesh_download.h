@@ -7,8 +7,8 @@
 
 namespace lipofill::server {
 
-/// The meshes of a model at rest: "skin" (quadrilaterals), "tissue" (hexahedra, not yet split by any film) and, where
-/// it has one, "scan".
+/// The meshes of a model at rest: "skin" (quadrilaterals), "tissue" (hexahedra, not yet split by
+/// any film) and, where it has one, "scan".
 grpc::ServerWriteReactor<v1::MeshSlice>* download_model_mesh(Backend& backend, grpc::CallbackServerContext* context,
                                                              const v1::DownloadModelMeshRequest& request);
 

@@ -34,8 +34,8 @@ absl::Status check_complete(Backend& backend, const std::string& patient, const 
                          absl::StatusCode::kFailedPrecondition);
 }
 
-/// A model that is to be built: its specification as the client gave it and as the core takes it, yet without the
-/// surfaces of its scans.
+/// A model that is to be built: its specification as the client gave it and as the core takes it,
+/// yet without the surfaces of its scans.
 struct ModelOrder {
   std::string patient;
   v1::ModelSpec message;  ///< with the figures of its presets

@@ -19,7 +19,8 @@ class Acknowledgements {
   bool must_wait() const { return most_ > 0 && on_their_way_.size() >= most_; }
   size_t on_their_way() const { return on_their_way_.size(); }
   void note_sent(uint64_t epoch, uint64_t sequence);
-  /// The client has taken the frame of this sequence and all before it. INVALID_ARGUMENT for one that was not sent.
+  /// The client has taken the frame of this sequence and all before it. INVALID_ARGUMENT for one
+  /// that was not sent.
   absl::Status acknowledge(uint64_t epoch, uint64_t sequence);
   /// What is on its way is of a stretch that was left: no answer is waited for.
   void rewind() { on_their_way_.clear(); }

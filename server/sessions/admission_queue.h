@@ -51,8 +51,8 @@ class AdmissionQueue {
     forget_if_gone(found);
   }
 
-  /// Place of the item for which `is` holds: 1 is the next, as things stand, if nobody came or left meanwhile; 0: it
-  /// does not wait.
+  /// Place of the item for which `is` holds: 1 is the next, as things stand, if nobody came or left
+  /// meanwhile; 0: it does not wait.
   template <typename Is>
   size_t position(Is&& is) const {
     std::vector<Head> heads = make_heads();

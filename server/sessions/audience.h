@@ -11,8 +11,9 @@
 
 namespace lipofill::server {
 
-/// The viewers of a simulation. Those who ask for no rate share one: that of screens, and less when they are many, so
-/// that sending to all of them takes a twentieth of the time of short steps. For one thread at a time.
+/// The viewers of a simulation. Those who ask for no rate share one: that of screens, and less when
+/// they are many, so that sending to all of them takes a twentieth of the time of short steps. For
+/// one thread at a time.
 ///
 /// Checked by tests/unit/server/sessions/audience_test.cc.
 class Audience {
@@ -24,7 +25,8 @@ class Audience {
   void join(std::shared_ptr<Viewer> viewer);
   void leave(const std::shared_ptr<Viewer>& viewer);
 
-  /// Shows the frame of this simulated time [s] to those who want it. It is made once, and only if somebody does.
+  /// Shows the frame of this simulated time [s] to those who want it. It is made once, and only if
+  /// somebody does.
   /// @param at_rest  no step follows soon
   void show(double time_s, bool at_rest, const MakeFrame& make_frame);
   /// Shows a frame to all.

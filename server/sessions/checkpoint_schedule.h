@@ -6,8 +6,9 @@
 
 namespace lipofill::server {
 
-/// When a session keeps its state by itself as it runs: at intervals, which grow where keeping is slow, so that it takes
-/// less than a hundredth of the run. Checked by tests/unit/server/sessions/checkpoint_schedule_test.cc.
+/// When a session keeps its state by itself as it runs: at intervals, which grow where keeping is
+/// slow, so that it takes less than a hundredth of the run. Checked by
+/// tests/unit/server/sessions/checkpoint_schedule_test.cc.
 class CheckpointSchedule {
  public:
   using Clock = std::chrono::steady_clock;

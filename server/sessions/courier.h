@@ -10,9 +10,10 @@
 
 namespace lipofill::server {
 
-/// One thread that starts the writes of streams which have something new: encoding and network stay off the threads
-/// that compute. It takes all that waits at once, so that a thread with a frame for many viewers is not held up by the
-/// writes to the first of them. Checked by tests/unit/server/sessions/courier_test.cc.
+/// One thread that starts the writes of streams which have something new: encoding and network stay
+/// off the threads that compute. It takes all that waits at once, so that a thread with a frame for
+/// many viewers is not held up by the writes to the first of them. Checked by
+/// tests/unit/server/sessions/courier_test.cc.
 class Courier {
  public:
   using Clock = std::chrono::steady_clock;

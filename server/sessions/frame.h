@@ -18,7 +18,8 @@ struct EncodedMessages {
   std::vector<std::string> messages;
 };
 
-/// Encodings of one thing, one for each set of meshes, made by whoever needs it first and shared by all viewers.
+/// Encodings of one thing, one for each set of meshes, made by whoever needs it first and shared by
+/// all viewers.
 class EncodingCache {
  public:
   using Encoder = std::function<EncodedMessages()>;

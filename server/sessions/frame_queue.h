@@ -17,8 +17,8 @@ struct FrameToSend {
   uint64_t skipped = 0;  ///< frames left out before this one
 };
 
-/// The frames that wait for a viewer. kLatest keeps one, and the preview beside it: a newer one takes its place and the
-/// skipped one is counted. kEvery keeps all up to a number of bytes.
+/// The frames that wait for a viewer. kLatest keeps one, and the preview beside it: a newer one
+/// takes its place and the skipped one is counted. kEvery keeps all up to a number of bytes.
 ///
 /// Checked by tests/unit/server/sessions/frame_queue_test.cc.
 class FrameQueue {
@@ -28,8 +28,8 @@ class FrameQueue {
 
   bool empty() const { return frames_.empty(); }
   const Frame& front() const { return *frames_.front(); }
-  /// Adds a frame. RESOURCE_EXHAUSTED, and nothing waits any more, when the bytes would be more than the bound; a single
-  /// frame may be larger.
+  /// Adds a frame. RESOURCE_EXHAUSTED, and nothing waits any more, when the bytes would be more
+  /// than the bound; a single frame may be larger.
   absl::Status push(std::shared_ptr<const Frame> frame);
   /// Takes the first frame, which there must be.
   FrameToSend pop();

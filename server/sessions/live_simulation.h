@@ -18,9 +18,10 @@
 
 namespace lipofill::server {
 
-/// A simulation with what goes along with its steps: its figures, the rows of its series, its preview, and its frames to
-/// viewers. It does what it is told; when steps are taken and commands fit is decided above (simulation_run.h,
-/// session.h). For one thread at a time, but for figures() and series(), which any thread may read.
+/// A simulation with what goes along with its steps: its figures, the rows of its series, its
+/// preview, and its frames to viewers. It does what it is told; when steps are taken and commands
+/// fit is decided above (simulation_run.h, session.h). For one thread at a time, but for figures()
+/// and series(), which any thread may read.
 ///
 /// Checked by tests/unit/server/sessions/live_simulation_test.cc and the tests of sessions.
 class LiveSimulation {
@@ -64,7 +65,8 @@ class LiveSimulation {
   /// Shows viewers the state in which it rests.
   void show_at_rest() { show(true); }
 
-  /// Makes the result of a simulation that has ended, has the sink keep it, and shows the last frame.
+  /// Makes the result of a simulation that has ended, has the sink keep it, and shows the last
+  /// frame.
   void conclude();
   /// The same for one of which no result is to be kept.
   void conclude_unkept();

@@ -11,7 +11,8 @@
 
 namespace lipofill::server {
 
-/// Built models, the most recently used few, by resource name. Simulations hold on to theirs longer.
+/// Built models, the most recently used few, by resource name. Simulations hold on to theirs
+/// longer.
 /// Checked by tests/unit/server/sessions/model_cache_test.cc.
 class ModelCache {
  public:

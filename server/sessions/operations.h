@@ -29,8 +29,9 @@ struct OperationView {
   int64_t create_time_us = 0;
 };
 
-/// The operations of this run of the daemon; they do not outlive it, what they made does. Of those that are done the
-/// last thousand are remembered. Checked by tests/unit/server/sessions/operations_test.cc.
+/// The operations of this run of the daemon; they do not outlive it, what they made does. Of those
+/// that are done the last thousand are remembered. Checked by
+/// tests/unit/server/sessions/operations_test.cc.
 class Operations {
  public:
   using Clock = std::chrono::steady_clock;
@@ -59,7 +60,8 @@ class Operations {
   absl::StatusOr<Owner> owner_of(const std::string& id) const;
   /// Lists the operations within the scope.
   std::vector<OperationView> list(const Scope& scope, const Page& page) const;
-  /// The reply comes when it is done, its progress is not `seen_progress`, or the timeout has passed. On any thread.
+  /// The reply comes when it is done, its progress is not `seen_progress`, or the timeout has
+  /// passed. On any thread.
   void wait(const std::string& id, std::chrono::milliseconds timeout, std::optional<double> seen_progress, Reply reply);
   absl::Status cancel(const std::string& id);
   /// Cancels what is under way and answers all who wait with UNAVAILABLE. Idempotent.

@@ -10,8 +10,9 @@
 
 namespace lipofill::server {
 
-/// Rows of a simulation's time series on their way to the sink. A row leaves only once it is there, so that a reader
-/// who looks here first and there next misses none. Thread-safe; rows are added and handed on by one thread at a time.
+/// Rows of a simulation's time series on their way to the sink. A row leaves only once it is there,
+/// so that a reader who looks here first and there next misses none. Thread-safe; rows are added
+/// and handed on by one thread at a time.
 ///
 /// Checked by tests/unit/server/sessions/pending_series_test.cc.
 class PendingSeries {

@@ -28,15 +28,16 @@ struct SessionHistory {
 
 /// Repeats a history step by step, until the simulation is where it was when the daemon ended.
 ///
-/// Checked by tests/unit/server/sessions/replay_test.cc and tests/unit/server/sessions/session_resume_test.cc.
+/// Checked by tests/unit/server/sessions/replay_test.cc and
+/// tests/unit/server/sessions/session_resume_test.cc.
 class Replay {
  public:
   /// @param step  of the state that the session goes on from
   Replay(SessionHistory history, uint64_t step);
 
   bool under_way() const { return under_way_; }
-  /// Repeats what took effect after the step the simulation is at. DATA_LOSS, or what the simulation says, when
-  /// something cannot be repeated.
+  /// Repeats what took effect after the step the simulation is at. DATA_LOSS, or what the
+  /// simulation says, when something cannot be repeated.
   absl::Status repeat(simulation::Simulation& simulation);
   /// True when nothing is left to repeat at this step or later, but for the stop.
   bool has_caught_up(uint64_t step) const { return history_.injections.empty() && step >= history_.until_step; }

@@ -4,8 +4,9 @@
 
 namespace lipofill::server {
 
-/// The clock of a simulation: how long it has run, and when its next step is due at the pace of one simulated second a
-/// second. Time in a queue, at rest, or spent on a preview does not count; the pace begins anew with every stretch.
+/// The clock of a simulation: how long it has run, and when its next step is due at the pace of one
+/// simulated second a second. Time in a queue, at rest, or spent on a preview does not count; the
+/// pace begins anew with every stretch.
 ///
 /// Checked by tests/unit/server/sessions/run_clock_test.cc.
 class RunClock {

@@ -34,20 +34,23 @@ struct RestoreOrder {
   std::string spec_message;
 };
 
-/// A simulation that lives in the daemon, not in a connection: steps on the worker pool while RUNNING, takes commands
-/// between steps, and shows its frames to viewers. The results depend on the plan and on the steps between which
-/// commands took effect, never on workers, viewers, the clock, or on how often the daemon was started again.
+/// A simulation that lives in the daemon, not in a connection: steps on the worker pool while
+/// RUNNING, takes commands between steps, and shows its frames to viewers. The results depend on
+/// the plan and on the steps between which commands took effect, never on workers, viewers, the
+/// clock, or on how often the daemon was started again.
 ///
-/// A command is in the sink before it takes effect, and takes effect before it is answered: whatever was answered is
-/// there after the end of the daemon, however that came. A session that is brought back first catches up: it repeats
-/// what was acknowledged from its state on; commands that come meanwhile wait until that is done.
+/// A command is in the sink before it takes effect, and takes effect before it is answered:
+/// whatever was answered is there after the end of the daemon, however that came. A session that is
+/// brought back first catches up: it repeats what was acknowledged from its state on; commands that
+/// come meanwhile wait until that is done.
 ///
-/// Its way is: mailbox (Mailbox), which lets one thread at a time act on the simulation, at once when that is at rest
-/// between turns, otherwise the worker after the step at hand; then receive(), which checks that it fits; then the sink;
-/// then the simulation's run (SimulationRun), which the next step is part of; then the answer.
+/// Its way is: mailbox (Mailbox), which lets one thread at a time act on the simulation, at once
+/// when that is at rest between turns, otherwise the worker after the step at hand; then receive(),
+/// which checks that it fits; then the sink; then the simulation's run (SimulationRun), which the
+/// next step is part of; then the answer.
 ///
-/// Checked by tests/unit/server/sessions/session_test.cc, tests/unit/server/sessions/session_resume_test.cc and
-/// tests/integration/.
+/// Checked by tests/unit/server/sessions/session_test.cc,
+/// tests/unit/server/sessions/session_resume_test.cc and tests/integration/.
 class Session : public WorkerPool::Task, public std::enable_shared_from_this<Session> {
  public:
   using Clock = WorkerPool::Clock;
@@ -62,8 +65,9 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   /// session.
   void go_on();
 
-  /// Commands. The reply comes within one step, on any thread: FAILED_PRECONDITION naming the state where it does not
-  /// fit, what the sink says where it cannot be kept. A request that was carried out before is answered and no more.
+  /// Commands. The reply comes within one step, on any thread: FAILED_PRECONDITION naming the state
+  /// where it does not fit, what the sink says where it cannot be kept. A request that was carried
+  /// out before is answered and no more.
   void start(RequestKey request, Reply reply);
   void pause(RequestKey request, Reply reply);
   void resume(RequestKey request, Reply reply);
@@ -94,7 +98,8 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   /// answers nothing any more but that it is parked.
   void park(std::chrono::duration<double> idle);
 
-  /// Shows the meshes and the present frame to the viewer, then every frame it wants, until unwatch() or the end.
+  /// Shows the meshes and the present frame to the viewer, then every frame it wants, until
+  /// unwatch() or the end.
   void watch(std::shared_ptr<Viewer> viewer);
   void unwatch(std::shared_ptr<Viewer> viewer);
   /// Meshes and present fields of them (the last ones when it has ended).
@@ -145,8 +150,8 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   bool scheduled_ = false;  ///< the pool has it
 };
 
-/// The session, which is not parked as long as this is there: for whoever is about to ask something of it. Null for
-/// null.
+/// The session, which is not parked as long as this is there: for whoever is about to ask something
+/// of it. Null for null.
 std::shared_ptr<Session> hold(const std::shared_ptr<Session>& session);
 
 }  // namespace lipofill::server

@@ -9,8 +9,9 @@
 
 namespace lipofill::server {
 
-/// The figures of a simulation as others see them: those after its last step, which they get without waiting for the
-/// one at hand. One thread at a time changes them; any thread may copy them.
+/// The figures of a simulation as others see them: those after its last step, which they get
+/// without waiting for the one at hand. One thread at a time changes them; any thread may copy
+/// them.
 ///
 /// Checked by tests/unit/server/sessions/session_figures_test.cc.
 class SessionFigures {

@@ -9,8 +9,9 @@
 
 namespace lipofill::server {
 
-/// Carries out `work` for a simulation; whatever it throws becomes a status that names the simulation. Nothing that goes
-/// wrong for one of them may reach the others, or cost a caller its answer.
+/// Carries out `work` for a simulation; whatever it throws becomes a status that names the
+/// simulation. Nothing that goes wrong for one of them may reach the others, or cost a caller its
+/// answer.
 template <typename Work>
 absl::Status guard_session(const std::string& id, Work&& work) {
   try {

@@ -19,8 +19,9 @@ struct SessionBounds {
   uint64_t memory_bytes = uint64_t{8} << 30;
 };
 
-/// The simulations in memory: those that have not ended, but for those that are parked. Their number, of all and of
-/// each tenant, and what they take are bounded. Checked by tests/unit/server/sessions/session_manager_test.cc.
+/// The simulations in memory: those that have not ended, but for those that are parked. Their
+/// number, of all and of each tenant, and what they take are bounded. Checked by
+/// tests/unit/server/sessions/session_manager_test.cc.
 class SessionManager {
  public:
   explicit SessionManager(const SessionBounds& bounds) : bounds_(bounds) {}
@@ -56,7 +57,8 @@ class SessionManager {
   void remove(const std::string& id);
   /// Removes the session, unless it is held: then it stays and this returns false.
   [[nodiscard]] bool remove_unless_held(const std::string& id);
-  /// Adds one that was there before the daemon was started again, whatever the bounds, and lets it go on.
+  /// Adds one that was there before the daemon was started again, whatever the bounds, and lets it
+  /// go on.
   void bring_back(const std::string& tenant, uint64_t bytes, std::shared_ptr<Session> session);
 
   /// Ends all sessions when the daemon ends: takes no more of them, ends viewers' streams with

@@ -70,16 +70,19 @@ class SessionSink {
   /// Keeps a command before it takes effect. False: an equal request was kept before, and this one
   /// is not.
   virtual absl::StatusOr<bool> keep_command(const CommandRecord& command, const RequestKey& request) = 0;
-  /// The same for an injection, whose message is the payload, with the start that it was resolved to [s].
+  /// The same for an injection, whose message is the payload, with the start that it was resolved
+  /// to [s].
   virtual absl::StatusOr<bool> keep_injection(const CommandRecord& command, double start_s,
                                               const RequestKey& request) = 0;
-  /// The same for going back to a checkpoint; `state` and `spec_message` are what the simulation goes on with.
+  /// The same for going back to a checkpoint; `state` and `spec_message` are what the simulation
+  /// goes on with.
   virtual absl::StatusOr<bool> keep_restore(const CommandRecord& command, SimulationState state,
                                             const std::string& spec_message, const RequestKey& request) = 0;
   /// A number for a new stream of frames, larger than any before.
   virtual absl::StatusOr<uint64_t> begin_epoch(const std::string& id) = 0;
 
-  /// The state and the rows that are not in the sink yet, both or neither. Sizes and hash of the draft are filled in.
+  /// The state and the rows that are not in the sink yet, both or neither. Sizes and hash of the
+  /// draft are filled in.
   virtual absl::StatusOr<CheckpointRecord> keep_checkpoint(const CheckpointRecord& draft, const std::string& snapshot,
                                                            const std::vector<SeriesEntry>& rows,
                                                            const RequestKey& request) = 0;

@@ -12,11 +12,13 @@
 
 namespace lipofill::server {
 
-/// The steps of a session between its commands, a slice at a time: what was acknowledged before the daemon was started
-/// again is repeated first, then comes the preview, then the simulation's own steps, at their pace; meanwhile the state
-/// is kept at intervals. The last step ends it. For one thread at a time.
+/// The steps of a session between its commands, a slice at a time: what was acknowledged before the
+/// daemon was started again is repeated first, then comes the preview, then the simulation's own
+/// steps, at their pace; meanwhile the state is kept at intervals. The last step ends it. For one
+/// thread at a time.
 ///
-/// Checked by tests/unit/server/sessions/session_test.cc and tests/unit/server/sessions/session_resume_test.cc.
+/// Checked by tests/unit/server/sessions/session_test.cc and
+/// tests/unit/server/sessions/session_resume_test.cc.
 class SimulationRun {
  public:
   using Clock = RunClock::Clock;
@@ -48,8 +50,8 @@ class SimulationRun {
   /// Takes no step any more: the daemon ends.
   void suspend() { suspended_ = true; }
   bool is_suspended() const { return suspended_; }
-  /// Keeps its state and its figures, and releases the simulation. What the sink says where that cannot be; ABORTED when
-  /// somebody holds it.
+  /// Keeps its state and its figures, and releases the simulation. What the sink says where that
+  /// cannot be; ABORTED when somebody holds it.
   absl::Status park();
   bool is_parked() const { return parked_; }
 

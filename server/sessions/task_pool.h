@@ -10,8 +10,8 @@
 
 namespace lipofill::server {
 
-/// A few threads for work too long for a thread that serves the network: building models, reading scans, measuring
-/// distances.
+/// A few threads for work too long for a thread that serves the network: building models, reading
+/// scans, measuring distances.
 class TaskPool {
  public:
   TaskPool(const std::string& name, int n_threads, size_t max_queued);

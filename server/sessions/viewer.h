@@ -40,18 +40,20 @@ struct EndOfStream {
 };
 using ToSend = std::variant<std::monostate, TopologyToSend, FrameToSend, EndOfStream>;
 
-/// What one watcher has yet to be sent: meshes, frames, the end. The session puts frames in and never waits; the
-/// stream takes them out as fast as its client reads.
+/// What one watcher has yet to be sent: meshes, frames, the end. The session puts frames in and
+/// never waits; the stream takes them out as fast as its client reads.
 ///
-/// A queue that overflows (FrameQueue) ends the stream. Where the client acknowledges frames, none but the last is taken
-/// while `max_unacknowledged` are on their way: what is taken after an acknowledgement is as new as that.
-/// Checked by tests/unit/server/sessions/viewer_test.cc and tests/unit/server/sessions/viewer_options_test.cc.
+/// A queue that overflows (FrameQueue) ends the stream. Where the client acknowledges frames, none
+/// but the last is taken while `max_unacknowledged` are on their way: what is taken after an
+/// acknowledgement is as new as that.
+/// Checked by tests/unit/server/sessions/viewer_test.cc and
+/// tests/unit/server/sessions/viewer_options_test.cc.
 class Viewer {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `wake` is called, on any thread and without a lock of this class, when there is something to take; it must not
-  /// block.
+  /// `wake` is called, on any thread and without a lock of this class, when there is something to
+  /// take; it must not block.
   Viewer(ViewerOptions options, std::function<void()> wake);
 
   // These are called by the session.

@@ -72,8 +72,8 @@ void WorkerPool::Group::count_turns_at_hand(Clock::time_point now) {
   counted_until = now;
 }
 
-/// A group none of whose tasks waited for a turn, because it has just come, rested, or has fewer tasks than there are
-/// threads, lacked nothing: it is level with the others from here on.
+/// A group none of whose tasks waited for a turn, because it has just come, rested, or has fewer
+/// tasks than there are threads, lacked nothing: it is level with the others from here on.
 void WorkerPool::make_ready(Active active, Clock::time_point now) {
   Group& group = active.group->second;
   group.count_turns_at_hand(now);

@@ -16,12 +16,13 @@
 
 namespace lipofill::server {
 
-/// A fixed number of threads that let tasks take turns. Tasks come in groups (tenants). The next turn goes to the group
-/// that has had the least time so far, and in it to the task that has had the least: a group with ten tasks gets no
-/// more of the threads than one with a single task, and tasks with long turns and tasks with short ones get the same
-/// share, so that a long simulation cannot starve a short one. At most `max_active` tasks share the threads; others
-/// wait in a queue (AdmissionQueue), which is fair between groups too, until one of those wants no more turns. A task
-/// is on one thread at a time. Checked by tests/unit/server/sessions/worker_pool_test.cc.
+/// A fixed number of threads that let tasks take turns. Tasks come in groups (tenants). The next
+/// turn goes to the group that has had the least time so far, and in it to the task that has had
+/// the least: a group with ten tasks gets no more of the threads than one with a single task, and
+/// tasks with long turns and tasks with short ones get the same share, so that a long simulation
+/// cannot starve a short one. At most `max_active` tasks share the threads; others wait in a queue
+/// (AdmissionQueue), which is fair between groups too, until one of those wants no more turns. A
+/// task is on one thread at a time. Checked by tests/unit/server/sessions/worker_pool_test.cc.
 class WorkerPool {
  public:
   using Clock = std::chrono::steady_clock;
@@ -60,8 +61,8 @@ class WorkerPool {
   /// Tasks of a group that wait for a turn, by time used, then by when they came.
   using Ready = std::map<std::pair<Clock::duration, uint64_t>, std::shared_ptr<Task>>;
 
-  /// Tasks that share the threads as one. Turns at hand count as far as they have gone, so that several threads do not
-  /// all turn to the same group.
+  /// Tasks that share the threads as one. Turns at hand count as far as they have gone, so that
+  /// several threads do not all turn to the same group.
   struct Group {
     /// Brings `used` up to date.
     void count_turns_at_hand(Clock::time_point now);
@@ -75,8 +76,9 @@ class WorkerPool {
   };
   using Groups = std::map<std::string, Group>;
 
-  /// A task that shares the threads, and the time it has had of them since it does. One that comes anew begins with
-  /// that of the task of its group whose turn was last: it is neither ahead of the others nor behind.
+  /// A task that shares the threads, and the time it has had of them since it does. One that comes
+  /// anew begins with that of the task of its group whose turn was last: it is neither ahead of the
+  /// others nor behind.
   struct Active {
     std::shared_ptr<Task> task;
     Groups::iterator group;

@@ -13,8 +13,8 @@ v1::Checkpoint to_checkpoint(const CheckpointRecord& record);
 absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const Principal& caller,
                                                  const v1::CreateCheckpointRequest& request);
 
-/// Takes a live simulation back, or begins a new one, as the request says. May take seconds: the model may have to be
-/// built again. DATA_LOSS for a checkpoint whose file is damaged.
+/// Takes a live simulation back, or begins a new one, as the request says. May take seconds: the
+/// model may have to be built again. DATA_LOSS for a checkpoint whose file is damaged.
 absl::StatusOr<v1::Simulation> restore_simulation(Backend& backend, const Principal& caller,
                                                   const v1::RestoreSimulationRequest& request);
 

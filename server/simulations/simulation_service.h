@@ -52,8 +52,8 @@ class SimulationService : public v1::SimulationService::CallbackService {
  private:
   /// Adds to an answer what the store does not hold.
   using Amend = std::function<void(v1::Simulation& simulation)>;
-  /// Has the session act and answers with the simulation as it is then; FAILED_PRECONDITION when it has ended, unless
-  /// an equal request was carried out before that.
+  /// Has the session act and answers with the simulation as it is then; FAILED_PRECONDITION when it
+  /// has ended, unless an equal request was carried out before that.
   template <typename Request>
   Reactor* command(Context* context, const Request* request, v1::Simulation* response, const char* what, const Act& act,
                    const Amend& amend = nullptr);

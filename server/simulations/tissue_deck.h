@@ -8,8 +8,9 @@
 
 namespace lipofill::server {
 
-/// Streams the deck of a simulation's tissue as it is now or, from the store, as it was when it ended. Pieces are made
-/// as the client takes them. Checked by tests/integration/service/tissue_deck_test.cc.
+/// Streams the deck of a simulation's tissue as it is now or, from the store, as it was when it
+/// ended. Pieces are made as the client takes them. Checked by
+/// tests/integration/service/tissue_deck_test.cc.
 grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* export_tissue_deck(Backend& backend,
                                                                            grpc::CallbackServerContext* context,
                                                                            const v1::ExportTissueDeckRequest& request);

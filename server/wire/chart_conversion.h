@@ -10,8 +10,9 @@
 
 namespace lipofill::server {
 
-/// Reads a message into SI values of the core, noting what is missing under the path of the field. Ranges are the
-/// core's business; numbers that are not finite and unknown enumerators have been refused before (message_check.h).
+/// Reads a message into SI values of the core, noting what is missing under the path of the field.
+/// Ranges are the core's business; numbers that are not finite and unknown enumerators have been
+/// refused before (message_check.h).
 /// Checked by tests/unit/server/wire/conversion_test.cc.
 class FieldReader {
  public:

@@ -22,8 +22,8 @@ void apply_field_mask(const google::protobuf::FieldMask& mask, google::protobuf:
 /// True when a mask that was checked names a field of the message itself.
 bool is_masked(const google::protobuf::FieldMask& mask, const std::string& path);
 
-/// Carries out a call with a read mask: checks it, does `read`, which fills the response, and leaves what is wanted of
-/// the response.
+/// Carries out a call with a read mask: checks it, does `read`, which fills the response, and
+/// leaves what is wanted of the response.
 template <typename Request, typename Response, typename Read>
 absl::Status read_masked(const Request& request, Response& response, Read&& read) {
   const absl::Status good = check_field_mask(request.read_mask(), *Response::descriptor(), "read_mask");

@@ -34,7 +34,8 @@ std::vector<v1::MeshSlice> slice_meshes(const v1::MeshSlice& whole);
 
 /// Serialised WatchResponses that carry the meshes.
 EncodedMessages encode_meshes(const v1::MeshSlice& whole);
-/// Bodies of FrameSlices, without skipped_frames: that is the one thing in which viewers differ. See frame_header().
+/// Bodies of FrameSlices, without skipped_frames: that is the one thing in which viewers differ.
+/// See frame_header().
 EncodedMessages encode_frame(const v1::FrameSlice& whole);
 /// Makes the header that turns a body of encode_frame() into a serialised WatchResponse.
 std::string frame_header(size_t body_size, uint64_t skipped_frames);

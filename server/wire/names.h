@@ -30,10 +30,11 @@ absl::StatusOr<std::string> parse_operation_name(const std::string& name, const 
 /// True when a text matches [a-z][a-z0-9-]{0,62}.
 bool is_id(const std::string& text);
 
-/// The id given, or a new one when it is empty. INVALID_ARGUMENT unless it matches [a-z][a-z0-9-]{0,62}.
+/// The id given, or a new one when it is empty. INVALID_ARGUMENT unless it matches
+/// [a-z][a-z0-9-]{0,62}.
 absl::StatusOr<std::string> id_or_new(const std::string& id, char prefix, const std::string& field);
-/// The same for ids that tenants share: an id that a tenant chooses begins with the tenant's name and '-', so that
-/// nobody learns from a collision what others have. Those of "local" are free.
+/// The same for ids that tenants share: an id that a tenant chooses begins with the tenant's name
+/// and '-', so that nobody learns from a collision what others have. Those of "local" are free.
 absl::StatusOr<std::string> id_or_new(const std::string& id, char prefix, const std::string& field,
                                       const std::string& tenant);
 

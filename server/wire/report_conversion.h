@@ -13,7 +13,8 @@
 
 namespace lipofill::server {
 
-/// Results of the core, in the units of the wire schema. Checked by tests/unit/server/wire/report_conversion_test.cc.
+/// Results of the core, in the units of the wire schema. Checked by
+/// tests/unit/server/wire/report_conversion_test.cc.
 v1::ModelReport to_model_report(const model::FaceModel& model);
 v1::ScanReport to_scan_report(const geometry::SurfaceMesh& mesh, const geometry::SurfaceCheck& check);
 v1::Summary to_summary(const SessionView& view);

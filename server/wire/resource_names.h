@@ -17,8 +17,9 @@ struct ResourceNames {
   size_t size() const { return patients.size() + simulations.size() + operations.size(); }
 };
 
-/// Every text that begins as the name of a resource does counts, whatever field it is in: a new field, or a new method,
-/// is covered before anybody thinks of it. What is no proper name is left to the method, which refuses it.
+/// Every text that begins as the name of a resource does counts, whatever field it is in: a new
+/// field, or a new method, is covered before anybody thinks of it. What is no proper name is left
+/// to the method, which refuses it.
 /// Checked by tests/unit/server/wire/resource_names_test.cc.
 ResourceNames resource_names_in(const google::protobuf::Message& message);
 

@@ -47,8 +47,8 @@ google::rpc::Status to_error_message(const absl::Status& status) {
 
 grpc::Status to_grpc_status(const absl::Status& status) {
   if (status.ok()) return grpc::Status::OK;
-  // HTTP/2 headers have a bound (8 KiB by default at clients); what does not fit would turn into another error on the
-  // way.
+  // HTTP/2 headers have a bound (8 KiB by default at clients); what does not fit would turn into
+  // another error on the way.
   constexpr size_t kMaxMessage = 2000;
   constexpr size_t kMaxDetails = 4000;
   std::string text(status.message());

@@ -8,8 +8,8 @@
 
 namespace lipofill::server {
 
-/// The same status with its field violations below `prefix`, the field of the request that holds the message they are
-/// about.
+/// The same status with its field violations below `prefix`, the field of the request that holds
+/// the message they are about.
 inline absl::Status with_prefix(const std::string& prefix, const absl::Status& status) {
   if (status.ok() || field_violations_of(status).empty()) return status;
   FieldViolations violations;

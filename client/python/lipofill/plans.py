@@ -180,9 +180,11 @@ class Plan:
         prestress_kpa: Optional[float] = None,
         law: Optional[str] = None,
     ) -> Plan:
-        """A layer of tissue, from the skin inwards; figures left out come from ``model.tissue_preset``.
+        """A layer of tissue, from the skin inwards; figures left out come from
+        ``model.tissue_preset``.
 
-        ``law`` is ``"COROTATIONAL"``, the paper's, or ``"NEO_HOOKEAN"``, which keeps the tissue's volume at any strain.
+        ``law`` is ``"COROTATIONAL"``, the paper's, or ``"NEO_HOOKEAN"``, which keeps the tissue's
+        volume at any strain.
         """
         self.model.layers.add(
             name=name,

@@ -1,5 +1,5 @@
-// The neo-Hookean hexahedron: its force is the slope of its energy, its tangent at rest that of its force, it knows no
-// rotation, and what it shares with the linear elements at rest is theirs.
+// The neo-Hookean hexahedron: its force is the slope of its energy, its tangent at rest that of its
+// force, it knows no rotation, and what it shares with the linear elements at rest is theirs.
 
 #include <gtest/gtest.h>
 
@@ -101,7 +101,8 @@ TEST_P(NeoHookean, ForceIsTheSlopeOfTheEnergy) {
   EXPECT_LT((slab.slope_of_energy(x) - force).norm(), 1e-6 * force.norm());
 }
 
-/// The law has a continuation below J = 0.05; energy and force have no step there, and stay finite beyond.
+/// The law has a continuation below J = 0.05; energy and force have no step there, and stay finite
+/// beyond.
 TEST_P(NeoHookean, StaysFiniteInsideOut) {
   Slab slab(GetParam());
   for (const double height : {0.06, 0.05, 0.04, 0.0, -0.5}) {
@@ -121,7 +122,8 @@ TEST_P(NeoHookean, TangentAtRestIsTheSlopeOfTheForce) {
   EXPECT_LT((tangent - slope).norm(), 1e-6 * slope.norm());
 }
 
-/// Elsewhere the tangent leaves out what is of the order of the strain, and keeps no negative eigenvalue.
+/// Elsewhere the tangent leaves out what is of the order of the strain, and keeps no negative
+/// eigenvalue.
 TEST_P(NeoHookean, TangentIsDefiniteAndNearTheSlopeOfTheForce) {
   Slab slab(GetParam());
   const Eigen::Matrix3Xd x = slab.deformed();
@@ -181,8 +183,9 @@ TEST(NeoHookeanTissue, StandsBesideCorotationalLayers) {
   EXPECT_NEAR(both, halves, 1e-12 * halves);
 }
 
-/// A column narrower than thick resists a lone node of its face as a solid does: the energy of a node pushed up between
-/// its neighbours, in elements a quarter as wide as thick, against the same with eight elements through the thickness.
+/// A column narrower than thick resists a lone node of its face as a solid does: the energy of a
+/// node pushed up between its neighbours, in elements a quarter as wide as thick, against the same
+/// with eight elements through the thickness.
 TEST(NeoHookeanTissue, HasNoSoftModeOfTheThickness) {
   const auto stiffness = [](int through) {
     const Box box{{6, 6, through}, {0.006, 0.006, 0.004}, through > 1};

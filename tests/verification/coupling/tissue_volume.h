@@ -15,7 +15,8 @@ std::shared_ptr<const model::FaceModel> build_with_law(model::FaceModelSpec spec
 /// Fills the disc, in the middle of the model below that layer, until it settles.
 KeptVolume fill_disc(const std::shared_ptr<const model::FaceModel>& model, const std::string& below);
 
-/// Neo-Hookean layers keep their volume within 0.5 %, and the skin rises by the fat's, whichever layer lies over it.
+/// Neo-Hookean layers keep their volume within 0.5 %, and the skin rises by the fat's, whichever
+/// layer lies over it.
 void expect_volume_kept(const model::FaceModelSpec& spec, const std::string& where);
 
 }  // namespace lipofill::verification

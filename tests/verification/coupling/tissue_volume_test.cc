@@ -1,5 +1,5 @@
-// Neo-Hookean tissue keeps its volume: 1 mL in a disc 24 mm wide under each layer of a flat square with the figures of
-// elastography. The corotational law loses a tenth of the fat's volume there.
+// Neo-Hookean tissue keeps its volume: 1 mL in a disc 24 mm wide under each layer of a flat square
+// with the figures of elastography. The corotational law loses a tenth of the fat's volume there.
 
 #include "tests/verification/coupling/tissue_volume.h"
 

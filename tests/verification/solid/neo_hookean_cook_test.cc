@@ -1,7 +1,8 @@
-// Cook's membrane of nearly incompressible neo-Hookean tissue at finite strain: E = 3, plane strain, a dead shear load of
-// 0.05 a unit length on the right side. Reference: deflection of the corner (48, 60), incompressible, 4.7011 (B. Mueller,
-// Mixed least squares finite element methods based on inverse stress-strain relations in hyperelasticity, thesis,
-// Universitaet Duisburg-Essen 2015).
+// Cook's membrane of nearly incompressible neo-Hookean tissue at finite strain: E = 3, plane
+// strain, a dead shear load of 0.05 a unit length on the right side. Reference: deflection of the
+// corner (48, 60), incompressible, 4.7011 (B. Mueller, Mixed least squares finite element methods
+// based on inverse stress-strain relations in hyperelasticity, thesis, Universitaet Duisburg-Essen
+// 2015).
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Neo-Hookean blocks of distorted elements under uniaxial compression and in simple shear, against the closed forms of
+// Neo-Hookean blocks of distorted elements under uniaxial compression and in simple shear, against
+// the closed forms of
 //
 //     W = mu/2 (J^-2/3 I1 - 3) + kappa/2 (J - 1)^2,   tau = mu J^-2/3 dev(F F^T) + kappa J (J - 1) I
 
@@ -89,7 +90,8 @@ void expect_compression(bool stacked, double nu) {
   block.record({"pressed to 0.6, side stretch, " + name, "1", side, state.x(0, corner) / kEdge, 1e-6});
 }
 
-/// All of the surface sheared by 0.8: shear force and the force that holds the plates (Poynting's effect).
+/// All of the surface sheared by 0.8: shear force and the force that holds the plates (Poynting's
+/// effect).
 void expect_shear(bool stacked, double nu) {
   constexpr double kShear = 0.8;
   Tissue tissue = make_block(stacked, nu);

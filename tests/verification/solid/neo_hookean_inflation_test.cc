@@ -1,5 +1,6 @@
-// A thick neo-Hookean sphere and cylinder (b/a = 2) inflated until the inner radius has grown by half, nu = 0.4999.
-// Incompressible closed forms: with r the radius now, R that at rest and lambda = r/R
+// A thick neo-Hookean sphere and cylinder (b/a = 2) inflated until the inner radius has grown by
+// half, nu = 0.4999. Incompressible closed forms: with r the radius now, R that at rest and
+// lambda = r/R
 //
 //     sphere    r^3 = R^3 + a^3 - A^3,   p = int_a^b 2 mu (lambda^2 - lambda^-4) dr/r
 //     cylinder  r^2 = R^2 + a^2 - A^2,   p = int_a^b mu (lambda^2 - lambda^-2) dr/r       plane strain
@@ -104,7 +105,8 @@ Measured inflate(int dimension, int n, bool stacked) {
     const Eigen::Vector3d force = tissue.internal_force().segment<3>(3 * a);
     work += force.head(dimension).dot(mesh.rest_positions.col(a).head(dimension));
   }
-  // The inner face is of flat quadrilaterals: its own volume counts, dV/dlambda = dimension V/lambda.
+  // The inner face is of flat quadrilaterals: its own volume counts, dV/dlambda = dimension
+  // V/lambda.
   const auto is_inner = [&](int e) {
     return radius(mesh.rest_positions.col(mesh.hexahedra[e][0])) < kInner + kTolerance;
   };

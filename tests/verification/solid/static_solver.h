@@ -33,12 +33,14 @@ struct LargeDeformation {
   Eigen::Matrix3Xd force;                 ///< dead load on the others [N] (3, n_nodes)
 };
 
-/// Finds the minimum of energy - force . x in `n_increments` of what is prescribed, by Newton's method with the
-/// tissue's own tangent and steps halved until the energy falls, to a relative residual of 1e-9. The tissue has no
-/// supports; after that its internal_force() holds the reactions.
+/// Finds the minimum of energy - force . x in `n_increments` of what is prescribed, by Newton's
+/// method with the tissue's own tangent and steps halved until the energy falls, to a relative
+/// residual of 1e-9. The tissue has no supports; after that its internal_force() holds the
+/// reactions.
 StaticState solve_large_deformation(Tissue& tissue, const LargeDeformation& problem, int n_increments);
 
-/// Smallest eigenfrequency of K phi = (2 pi f)^2 M phi [Hz], by inverse iteration from a uniform lift.
+/// Smallest eigenfrequency of K phi = (2 pi f)^2 M phi [Hz], by inverse iteration from a uniform
+/// lift.
 double compute_first_frequency(Tissue& tissue);
 
 }  // namespace lipofill::solid::testing

@@ -10,7 +10,8 @@ export class Chart {
 
   /** @param skin  quadrilaterals of n_xi by n_eta, nodes with xi running fastest */
   constructor(readonly skin: Mesh) {
-    // The second corner of the first cell is its neighbour along xi, the fourth along eta: one row further.
+    // The second corner of the first cell is its neighbour along xi, the fourth along eta: one row
+    // further.
     this.nXi = skin.cells[3] - skin.cells[0] - 1;
     this.nEta = skin.points.length / 3 / (this.nXi + 1) - 1;
     if (!Number.isInteger(this.nEta) || this.nXi < 1 || this.nEta < 1) throw new Error("the model's skin is no grid");

@@ -1,4 +1,5 @@
-// What the daemon says of the plan on its model: where the zones are, what is wrong, what is worth knowing.
+// What the daemon says of the plan on its model: where the zones are, what is wrong, what is worth
+// knowing.
 import { batch, effect, signal } from "@preact/signals";
 import { toJsonString } from "@bufbuild/protobuf";
 import { SimulationSpecSchema } from "@wire/simulation_pb";

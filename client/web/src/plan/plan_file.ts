@@ -8,7 +8,8 @@ export function parsePlan(text: string): Plan {
 }
 
 /**
- * The plan by itself: names of things in this daemon stay out, the scan is a file beside the plan, landmarks are inside.
+ * The plan by itself: names of things in this daemon stay out, the scan is a file beside the plan,
+ * landmarks are inside.
  * @param scanFile  name of the scan's file; empty for a square
  */
 export function writePlan(plan: Plan, scanFile: string, unit: ScanUnit): string {

@@ -1,7 +1,7 @@
 // The frames of a run, to scrub through: bounded in bytes, over the whole of its time.
 //
-// When it is full every second frame goes and from then on only every second that comes stays, and so on: a long run is
-// held coarser, never cut. The newest frame is always there.
+// When it is full every second frame goes and from then on only every second that comes stays, and
+// so on: a long run is held coarser, never cut. The newest frame is always there.
 import type { Frame } from "../api/watch";
 
 export class FrameStore {

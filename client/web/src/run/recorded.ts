@@ -1,4 +1,5 @@
-// A folder that `lipofill run` has written, opened in the page: meshes over time, series and summary.
+// A folder that `lipofill run` has written, opened in the page: meshes over time, series and
+// summary.
 import type vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
 import vtkXMLPolyDataReader from "@kitware/vtk.js/IO/XML/XMLPolyDataReader";
 import { fromJson, type JsonValue } from "@bufbuild/protobuf";

@@ -1,4 +1,5 @@
-// What is done with the simulation on the page: created from the plan, steered, watched; or one that is over, opened.
+// What is done with the simulation on the page: created from the plan, steered, watched; or one
+// that is over, opened.
 import { batch } from "@preact/signals";
 import { Code, ConnectError } from "@connectrpc/connect";
 import { Simulation_State, type Injection, type SeriesRow, type Simulation } from "@wire/simulation_pb";

@@ -1,4 +1,5 @@
-// The time series as the table that `lipofill run` writes: all figures of a row, under their names in the schema.
+// The time series as the table that `lipofill run` writes: all figures of a row, under their names
+// in the schema.
 import { create, type DescField, type DescMessage, type Message } from "@bufbuild/protobuf";
 import { reflect } from "@bufbuild/protobuf/reflect";
 import { SeriesRowSchema, type Probe, type SeriesRow } from "@wire/simulation_pb";

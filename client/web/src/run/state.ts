@@ -1,4 +1,5 @@
-// The simulation that the page shows, and what has come of it: another one than the plan's where one was opened.
+// The simulation that the page shows, and what has come of it: another one than the plan's where
+// one was opened.
 import { computed, signal } from "@preact/signals";
 import { Simulation_State, type SeriesRow, type Simulation } from "@wire/simulation_pb";
 import type { Evaluation } from "@wire/simulation_service_pb";

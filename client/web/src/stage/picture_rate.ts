@@ -1,4 +1,5 @@
-// How many different frames become pictures, and fewer pixels where a machine is too slow to show them all.
+// How many different frames become pictures, and fewer pixels where a machine is too slow to show
+// them all.
 import { frame, store } from "../run/state";
 import type { FaceScene } from "../scene/face_scene";
 import { rate } from "./stage_state";

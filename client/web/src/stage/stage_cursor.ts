@@ -1,4 +1,5 @@
-// What the cursor does over the picture: it probes, clicks places, paints; turning is the toolkit's.
+// What the cursor does over the picture: it probes, clicks places, paints; turning is the
+// toolkit's.
 import type { RefObject } from "preact";
 import { useEffect } from "preact/hooks";
 import { click, dab, tool } from "../plan/tools";

@@ -19,7 +19,8 @@
 
 namespace lipofill::server {
 
-/// A daemon's inside on a data directory of its own, with a square model; no network. It can end and begin again.
+/// A daemon's inside on a data directory of its own, with a square model; no network. It can end
+/// and begin again.
 class BackendTest : public ::testing::Test {
  protected:
   static constexpr char kModel[] = "patients/anna/models/m";

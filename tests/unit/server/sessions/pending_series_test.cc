@@ -74,7 +74,8 @@ TEST(PendingSeries, KeepsABoundedNumberOfRows) {
   EXPECT_THAT(steps_after(series, 0), ElementsAre(PendingSeries::kMost + 1));
 }
 
-/// The bound and the end of a chunk fall on the same row: where there is room again by then, nothing is lost.
+/// The bound and the end of a chunk fall on the same row: where there is room again by then,
+/// nothing is lost.
 TEST(PendingSeries, LosesNothingWhenThereIsRoomAtTheLastMoment) {
   MemorySink sink;
   sink.room = absl::ResourceExhaustedError("the disk is full");

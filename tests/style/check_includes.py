@@ -51,7 +51,9 @@ ALLOWED = {
     | {"core/base", "core/geometry", "core/model", "core/simulation"}
     | {"proto", "server/backend"},
     "server/entry": BELOW_ENTRY | {"core/base"} | {"proto", "grpc", "server/entry"},
-    "server/patients": BELOW_SERVICES | {"core/base", "core/geometry", "core/model"} | {"proto", "grpc", "server/patients"},
+    "server/patients": BELOW_SERVICES
+    | {"core/base", "core/geometry", "core/model"}
+    | {"proto", "grpc", "server/patients"},
     "server/simulations": BELOW_SERVICES | {"core/base", "core/export"} | {"proto", "grpc", "server/simulations"},
     "server/frames": BELOW_SERVICES | {"core/base"} | {"proto", "grpc", "server/frames"},
     "server": {"core/base", "core/coupling", "grpc", "server"},

@@ -120,7 +120,10 @@ export function landmarksOf(region: string, side: Side): string[] {
   ];
 }
 
-/** The corners of a region on either side; the mirrored ones in the order that leaves them anticlockwise. */
+/**
+ * The corners of a region on either side; the mirrored ones in the order that leaves them
+ * anticlockwise.
+ */
 export function cornersOf(region: string, side: Side): SkinPoint[] {
   const corners = regions[region].corners.map((corner) =>
     create(SkinPointSchema, {
@@ -140,7 +143,10 @@ export function cornersOf(region: string, side: Side): SkinPoint[] {
   return side === "left" ? corners : [corners[1], corners[0], corners[3], corners[2]];
 }
 
-/** Lets the region follow from the zones of a plan that gives it neither corners nor what it goes around. */
+/**
+ * Lets the region follow from the zones of a plan that gives it neither corners nor what it goes
+ * around.
+ */
 export function takeRegionFromZones({ model, simulation }: Plan): void {
   if (model?.geometry.case !== "scanRegion") return;
   const into = model.geometry.value;

@@ -33,7 +33,10 @@ function readPoint(value: unknown, what: string): Point {
   throw new Error(`${what} is ${JSON.stringify(value)}, must be three numbers`);
 }
 
-/** The JSON of a landmarks file as `lipofill run` takes it: an object "landmarks" of name to [x, y, z], optionally "axes". */
+/**
+ * The JSON of a landmarks file as `lipofill run` takes it: an object "landmarks" of name to [x, y,
+ * z], optionally "axes".
+ */
 export function parseLandmarks(text: string, unit: ScanUnit): Landmarks {
   const document = JSON.parse(text) as { landmarks?: Record<string, unknown>; axes?: Record<string, unknown> };
   if (
@@ -77,7 +80,10 @@ const cross = (a: Point, b: Point): Point => [
 ];
 const minus = (a: Point, b: Point): Point => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 
-/** The head's axes as given, else guessed from the landmarks: enough to show a face upright; the daemon has its own. */
+/**
+ * The head's axes as given, else guessed from the landmarks: enough to show a face upright; the
+ * daemon has its own.
+ */
 export function axesOf(
   points: Record<string, Vector3>,
   given: HeadAxes | undefined,
@@ -115,7 +121,10 @@ function fromLandmarks(
   return at;
 }
 
-/** Where a point of the skin is, near the skin; undefined while that is not known on this side of the wire. */
+/**
+ * Where a point of the skin is, near the skin; undefined while that is not known on this side of
+ * the wire.
+ */
 export function locate(
   place: SkinPoint,
   points: Record<string, Vector3>,

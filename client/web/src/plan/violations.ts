@@ -1,7 +1,10 @@
 // Which field of the form a violation belongs to.
 import type { Violation } from "../api/errors";
 
-/** "spec.films[0].n_xi" of a simulation is "simulation.films[0].n_xi" of the plan; the same for a model. */
+/**
+ * "spec.films[0].n_xi" of a simulation is "simulation.films[0].n_xi" of the plan; the same for a
+ * model.
+ */
 export function toPlanFields(violations: Violation[], part: "model" | "simulation"): Violation[] {
   return violations.map(({ field, description }) => ({ field: field.replace(/^spec(?=\.|$)/, part), description }));
 }

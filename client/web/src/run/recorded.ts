@@ -64,7 +64,10 @@ function timesOf(pvd: string): Map<string, number> {
   return new Map(Array.from(sets, (set) => [set.getAttribute("file") ?? "", Number(set.getAttribute("timestep"))]));
 }
 
-/** The state and its figures as `summary.json` has them; fields the schema does not know are left out. */
+/**
+ * The state and its figures as `summary.json` has them; fields the schema does not know are left
+ * out.
+ */
 function parseSummary(text: string): Simulation {
   const document = JSON.parse(text) as Record<string, JsonValue>;
   const known = {

@@ -35,7 +35,10 @@ let leave = new AbortController();
 const pollMs = 400;
 const mostRows = 20_000;
 
-/** Figures that change more often than this cannot be read, and drawing them takes what the face needs. */
+/**
+ * Figures that change more often than this cannot be read, and drawing them takes what the face
+ * needs.
+ */
 const readableMs = 200;
 let figuresDue: ReturnType<typeof setTimeout> | undefined;
 
@@ -122,7 +125,10 @@ async function poll(name: string, left: AbortSignal): Promise<void> {
   }
 }
 
-/** In the order of time, coarser where there are too many; a return to an earlier state takes later rows away. */
+/**
+ * In the order of time, coarser where there are too many; a return to an earlier state takes later
+ * rows away.
+ */
 function thinRows(all: SeriesRow[]): SeriesRow[] {
   return all.length <= mostRows ? all : all.filter((_, index) => index % 2 === 0 || index === all.length - 1);
 }

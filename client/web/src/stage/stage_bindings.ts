@@ -138,7 +138,9 @@ export function bindMarkers(scene: FaceScene): End {
   });
 }
 
-/** A frame is worked on once a refresh of the screen, the newest: what came between is only stored. */
+/**
+ * A frame is worked on once a refresh of the screen, the newest: what came between is only stored.
+ */
 export function bindFrame(scene: FaceScene): End {
   let due = 0;
   let lookedAt: unknown;

@@ -79,7 +79,7 @@ const std::vector<RegionRow>& rows() {
       {"chin", {{"pogonion", 0.70}, {"cheilion", 0.30}}, 0, 0, 0, "pogonion", "cheilion", 16, 12},
       {"jawline", {{"gonion", 0.45}, {"menton", 0.25}, {"cheilion", 0.30}}, 9, 0, 2, "gonion", "menton", 22, 9},
       {"submaxillary", {{"gonion", 0.45}, {"menton", 0.20}, {"cheilion", 0.35}}, 7, -10, 0, "gonion", "menton", 20, 11},
-      {"temple", {{"zygion", 0.25}, {"exocanthion", 0.75}}, 0, 19, -1, "zygion", "exocanthion", 15, 13},
+      {"temple", {{"zygion", 0.25}, {"exocanthion", 0.75}}, 0, 19, 2, "zygion", "exocanthion", 14, 12},
       {"forehead", {{"exocanthion", 0.60}, {"nasion", 0.40}}, 0, 28, 0, "", "", 18, 11},
   };
   return table;

@@ -83,7 +83,7 @@ absl::Status TarArchive::explain(const char* otherwise) const {
   const std::string_view found = text != nullptr ? text : "";
   const bool is_short = found.find("runcated") != std::string_view::npos;
   return absl::InvalidArgumentError(
-      absl::StrCat(file_, " ", is_short ? "is cut short" : otherwise, found.empty() ? "" : ": ", found));
+      absl::StrCat(file_, " ", is_short ? "is cut short" : otherwise, found.empty() ? "" : ": ", std::string(found)));
 }
 
 }  // namespace lipofill::client

@@ -108,14 +108,19 @@ std::vector<geometry::OutlineLoop> outline_of_cells(const film::FilmGrid& grid, 
 
 }  // namespace
 
-int FilmLayout::cell_at(const geometry::ChartPoint& place) const {
+int FilmLayout::slot_at(const geometry::ChartPoint& place) const {
   const double x = (place.xi - grid.extent.xi_min) / (grid.extent.xi_max - grid.extent.xi_min) * grid.n_xi;
   const double y = (place.eta - grid.extent.eta_min) / (grid.extent.eta_max - grid.extent.eta_min) * grid.n_eta;
   constexpr double kRoundOff = 1e-9;
   if (x < -kRoundOff || y < -kRoundOff || x > grid.n_xi + kRoundOff || y > grid.n_eta + kRoundOff) return -1;
   const int i = std::clamp(static_cast<int>(x), 0, grid.n_xi - 1);
   const int j = std::clamp(static_cast<int>(y), 0, grid.n_eta - 1);
-  return grid.cell_of_slot[j * grid.n_xi + i];
+  return j * grid.n_xi + i;
+}
+
+int FilmLayout::cell_at(const geometry::ChartPoint& place) const {
+  const int slot = slot_at(place);
+  return slot < 0 ? -1 : grid.cell_of_slot[slot];
 }
 
 geometry::ChartPoint FilmLayout::cell_centre(int cell) const {

@@ -1,6 +1,7 @@
 #include "core/simulation/frame_layout.h"
 
 #include <algorithm>
+#include <map>
 
 namespace lipofill::simulation {
 namespace {
@@ -27,10 +28,52 @@ std::vector<int> order_outermost_first(const std::vector<plan::FilmLayout>& film
   return order;
 }
 
-void find_cell_below(const std::vector<plan::FilmLayout>& films, const std::vector<int>& outermost_first,
+/// Whether a place lies inside loops, by the number of times a line from it crosses them.
+bool lies_inside(const std::vector<geometry::OutlineLoop>& outline, const geometry::ChartPoint& place) {
+  bool inside = false;
+  for (const geometry::OutlineLoop& loop : outline) {
+    for (size_t k = 0; k < loop.size(); ++k) {
+      const geometry::ChartPoint& a = loop[k];
+      const geometry::ChartPoint& b = loop[(k + 1) % loop.size()];
+      if ((a.eta > place.eta) == (b.eta > place.eta)) continue;
+      const double crossing = a.xi + (b.xi - a.xi) * (place.eta - a.eta) / (b.eta - a.eta);
+      if (place.xi < crossing) inside = !inside;
+    }
+  }
+  return inside;
+}
+
+/// The cells that an outline cuts: which zones have a part of a slot, and the cells it counts to.
+class CutSlots {
+ public:
+  explicit CutSlots(const plan::FilmLayout& film) : film_(film) {
+    const film::FilmGrid& grid = film.grid;
+    for (int cell = 0; cell < grid.n_cells(); ++cell) {
+      if (grid.cover[cell] != film::kWholeSlot) cells_[grid.slot_of_cell[cell]].push_back(cell);
+    }
+    for (const film::Fragment& fragment : grid.fragments) cells_[fragment.slot].push_back(fragment.cell);
+  }
+
+  /// The cell under a place, -1 where no zone is.
+  int cell_at(const geometry::ChartPoint& place) const {
+    const int slot = film_.slot_at(place);
+    const auto cut = cells_.find(slot);
+    if (cut == cells_.end()) return film_.cell_at(place);
+    for (const int cell : cut->second) {
+      if (lies_inside(film_.outlines[static_cast<size_t>(film_.grid.zone_of_cell[cell])], place)) return cell;
+    }
+    return -1;
+  }
+
+ private:
+  const plan::FilmLayout& film_;
+  std::map<int, std::vector<int>> cells_;  ///< by slot
+};
+
+void find_cell_below(const std::vector<CutSlots>& films, const std::vector<int>& outermost_first,
                      const geometry::ChartPoint& place, SkinPoint& point) {
   for (const int f : outermost_first) {
-    const int cell = films[f].cell_at(place);
+    const int cell = films[static_cast<size_t>(f)].cell_at(place);
     if (cell < 0) continue;
     point.film = f;
     point.cell = cell;
@@ -67,10 +110,11 @@ FrameLayout make_frame_layout(const geometry::LayeredGrid& skin, const std::vect
                               const geometry::FaceGeometry& face) {
   FrameLayout layout;
   const std::vector<int> outermost_first = order_outermost_first(films);
+  const std::vector<CutSlots> cut(films.begin(), films.end());
   const auto make_point = [&](int vertex, const geometry::ChartPoint& place) {
     SkinPoint point = place_on_skin(skin, place);
     point.vertex = vertex;
-    find_cell_below(films, outermost_first, place, point);
+    find_cell_below(cut, outermost_first, place, point);
     return point;
   };
   const geometry::LayeredGrid& shown = face.grid;

@@ -24,9 +24,9 @@ JawPlan load_sample_plan(const std::string& file) {
   // What the daemon would have put there: the scan and the model are passed on as they are.
   plan->plan.mutable_model()->mutable_scan_region()->set_scan("patients/jaw/scans/face");
   plan->plan.mutable_simulation()->set_model("patients/jaw/models/face");
-  std::ifstream file(*plan->scan_file, std::ios::binary);
+  std::ifstream scan_file(*plan->scan_file, std::ios::binary);
   std::stringstream bytes;
-  bytes << file.rdbuf();
+  bytes << scan_file.rdbuf();
   auto scan = geometry::read_surface(bytes.str(), geometry::SurfaceFormat::kObj, 1e-3);
   auto model_spec = server::to_face_model_spec(plan->plan.model());
   auto spec = server::to_simulation_spec(plan->plan.simulation());

@@ -80,7 +80,8 @@ struct Slab {
   }
   Eigen::MatrixXd tangent(const Eigen::Matrix3Xd& x) {
     tissue.assemble(x, kStatic);
-    return Eigen::MatrixXd(tissue.system_matrix().selfadjointView<Eigen::Lower>());
+    const Eigen::MatrixXd lower = tissue.system_matrix();
+    return lower.selfadjointView<Eigen::Lower>();
   }
 };
 

@@ -151,7 +151,7 @@ StaticState solve_large_deformation(Tissue& tissue, const LargeDeformation& prob
       tissue.assemble(state.x, kStatic);
       const Eigen::VectorXd residual =
           share * gather_free(problem.force.data()) - gather_free(tissue.internal_force().data());
-      state.converged = residual.norm() < 1e-9 * (tissue.internal_force().norm() + problem.force.norm());
+      state.converged = residual.norm() < 1e-8 * (tissue.internal_force().norm() + problem.force.norm());
       if (state.converged) break;
       const Solver solver(extract(tissue.system_matrix(), number, n_free));
       const Eigen::VectorXd step = solver.solve(residual);

@@ -71,7 +71,9 @@ Ball find_ball(const std::array<Eigen::Vector3d, 4>& corners) {
 }
 
 std::string explain_off_skin(double to_skin, double to_scan, bool is_beyond) {
-  if (is_beyond) {
+  // Beyond a border the skin is what is nearest of the scan.
+  const bool is_inside = to_scan < 0.5 * to_skin;
+  if (is_beyond && !is_inside) {
     return absl::StrFormat(
         "lies %.1f mm beyond a border of the skin, must be at most %.0f mm from it: the scan ends there", to_skin * 1e3,
         kFarthestFromSkin * 1e3);

@@ -30,12 +30,8 @@ struct StepRules {
   double growth = 2.0;
   int easy_film_iterations = 30;
   int easy_newton_iterations = 4;
-  /// The skin counts as at rest after this many slow steps in a row, once it has less than this
-  /// share of its lift still to go: thin films and thick fat are slow long before they rest. Below
-  /// the distance, a hundredth of a micrometre, what is still to go is round-off.
+  /// The skin counts as at rest after this many slow steps in a row.
   int settled_steps = 5;
-  double settled_share = 0.01;
-  double settled_distance = 1e-8;  ///< [m]
 };
 
 /// Returns the rules of a goal. When only the settled shape matters, a step that converges is easy

@@ -12,6 +12,7 @@ namespace {
 constexpr double kPoorScaledJacobian = 0.2;
 constexpr double kHighPressure = 10e3;     // [Pa]
 constexpr double kLargeVolumeLoss = 0.02;  // of the tissue
+constexpr double kSmallRest = 0.01;        // of the lift
 constexpr double kPascalsPerMmhg = 133.322;
 
 }  // namespace
@@ -24,6 +25,13 @@ void Simulation::Impl::remark_on_result(std::vector<std::string>& remarks) const
                         "holds it where it is put: inject less or into a larger zone.",
                         report.max_pressure / kPascalsPerKilopascal, report.max_pressure / kPascalsPerMmhg,
                         kHighPressure / kPascalsPerKilopascal));
+  }
+  const double lift = report.skin_max_displacement;
+  if (phase == Phase::kSettled && report.settling_error > kSmallRest * lift && std::isfinite(report.settling_error)) {
+    remarks.push_back(
+        absl::StrFormat("The skin is slow enough to count as at rest and has some %.3f mm still to go, "
+                        "%.1f %% of its lift: lower settle_skin_speed_mm_per_s to go on.",
+                        report.settling_error * kMillimetresPerMetre, 100.0 * report.settling_error / lift));
   }
   if (stepper->tissue() == nullptr) return;
   if (report.min_scaled_jacobian < kPoorScaledJacobian) {

@@ -50,6 +50,7 @@ TEST(TissueSystem, AZoneThatNoFreeNodeOpensIsRefused) {
   SmallSystem c;
   c.spec.films[0].zones = {{"thin", geometry::ChartBox{0.2, 0.4, 0.2, 0.4}}};
   c.spec.films[0].n_xi = c.spec.films[0].n_eta = 5;
+  c.spec.films[0].edge.outline = plan::ZoneOutline::kCells;
   const auto film = plan::place_film(*c.model, c.spec.films[0]);
   ASSERT_TRUE(film.ok()) << film.status();
   const std::vector<plan::FilmLayout> films{*film};

@@ -80,7 +80,7 @@ TEST(FrameLayout, ShowsTheOutermostFilmBelowASkinPoint) {
   Layered face;
   face.model = *model::build_face_model(spec, nullptr);
   face.add("muscle", geometry::ChartBox{0.0, 1.0, 0.0, 1.0}, 6);
-  face.add("skin", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}, 6);
+  face.add("skin", geometry::ChartBox{0.0, 0.5, 0.0, 1.0}, 3);
   const FrameLayout layout = face.layout();
   const auto film_at = [&](int i, int j) { return layout.skin[static_cast<size_t>(j * 13 + i)].film; };
   EXPECT_EQ(film_at(3, 6), 1);

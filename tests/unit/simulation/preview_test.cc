@@ -137,7 +137,7 @@ TEST(Preview, SaysWhatACoarseGridCannotHold) {
   const auto full = make_full(spec);
   const auto preview = Preview::create(full->shared_model(), full->spec());
   ASSERT_FALSE(preview.ok());
-  EXPECT_THAT(std::string(preview.status().message()), testing::HasSubstr("claims no film cell"));
+  EXPECT_THAT(std::string(preview.status().message()), testing::HasSubstr("make the zone at least two cells wide"));
 }
 
 TEST(Preview, GivesUpAfterABoundedNumberOfSteps) {

@@ -101,21 +101,6 @@ TEST(LaggedMobility, IsDueWhenLateIterationsHaveCostAsMuch) {
   EXPECT_EQ(state.late_pressure_iterations, 0);
 }
 
-TEST(LaggedMobility, IsTakenUpToTheSameBits) {
-  FlatFilm film;
-  const mechanics::SimulationState thin = film.state_of(0.2e-3);
-  const Eigen::VectorXd with_thin = film.solve();
-  const long before = film.solver.pressure_solver().iterations();
-  film.state_of(1e-3);
-  const Eigen::VectorXd with_thick = film.solve();
-  const long with_own = film.solver.pressure_solver().iterations() - before;
-  EXPECT_NE(with_thick, with_thin) << "another preconditioner leaves other bits";
-  film.mobility.take_up(thin);
-  EXPECT_EQ(film.solve(), with_thin);
-  EXPECT_GT(film.solver.pressure_solver().iterations() - before - with_own, with_own)
-      << "a mobility of other thickness costs iterations";
-}
-
 /// Once forgotten it is made anew, with the walls that there are now.
 TEST(LaggedMobility, ForgottenItTakesTheNewWalls) {
   FlatFilm film;

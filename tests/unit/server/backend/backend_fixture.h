@@ -90,6 +90,14 @@ class BackendTest : public ::testing::Test {
     }
     EXPECT_TRUE(has_ended(record_of(id).state)) << id;
   }
+  /// Asks a session to give up its memory until it has.
+  void park(const std::string& id) {
+    for (int i = 0; i < 2'000 && backend_->sessions.find(id) != nullptr; ++i) {
+      if (i % 100 == 0) backend_->sessions.find(id)->park(std::chrono::duration<double>(0.0));
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ASSERT_EQ(backend_->sessions.find(id), nullptr) << id << " has not been parked in 20 s";
+  }
   absl::StatusOr<SessionView> inspect(const std::string& id) {
     const auto session = backend_->sessions.hold(id);
     if (session == nullptr) return absl::NotFoundError(id);

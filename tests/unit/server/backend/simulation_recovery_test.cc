@@ -114,10 +114,7 @@ TEST_F(RecoveryTest, OneWhosePlanIsLostFailsAndTheOthersDoNotSufferFromIt) {
 TEST_F(RecoveryTest, AParkedOneStaysSoUntilItIsWoken) {
   create("a", 1e6);
   const SessionView before = run_to("a", 20);
-  {
-    const auto session = backend_->sessions.find("a");
-    while (backend_->sessions.find("a") != nullptr) session->park(std::chrono::duration<double>(0.0));
-  }
+  park("a");
   restart();
   ASSERT_TRUE(bring_back_simulations(*backend_).ok());
   EXPECT_EQ(backend_->sessions.find("a"), nullptr);
@@ -130,8 +127,7 @@ TEST_F(RecoveryTest, AParkedOneStaysSoUntilItIsWoken) {
 
 TEST_F(RecoveryTest, OneIsNotWokenWhereThereIsNoRoom) {
   create("a", 1e6);
-  const auto session = backend_->sessions.find("a");
-  while (backend_->sessions.find("a") != nullptr) session->park(std::chrono::duration<double>(0.0));
+  park("a");
   options_.sessions.simulations = 1;
   begin();
   create("b", 1e6);

@@ -342,8 +342,8 @@ TEST(ScanRegion, RefusesCornersOnSeparatePieces) {
 TEST(ScanRegion, RefusesLandmarksAxesAndScansThatCannotBe) {
   ScanRegionSpec region = make_sphere_region(40);
   region.landmarks["gonion_left"] = 1.5 * on_sphere(0, 0);
-  region.landmarks["menton"] = Eigen::Vector3d(std::nan(""), 0, 0);
   expect_violation(make_spec(region), "scan_region.landmarks_mm[\"gonion_left\"]", "40.0 mm from the surface");
+  region.landmarks["menton"] = Eigen::Vector3d(std::nan(""), 0, 0);
   expect_violation(make_spec(region), "scan_region.landmarks_mm[\"menton\"]", "finite");
 
   region = make_sphere_region(40);

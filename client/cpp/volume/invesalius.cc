@@ -49,7 +49,7 @@ std::vector<double> numbers_of(vtkXMLDataElement* array) {
 
 absl::StatusOr<std::string> read_plist(const std::filesystem::path& project) {
   auto tar = TarArchive::open(project);
-  if (!tar.ok()) return tar.status();
+  if (!tar.ok()) return absl::InvalidArgumentError(absl::StrCat("not an InVesalius project: ", tar.status().message()));
   const auto size = tar->find("main.plist");
   if (!size.ok())
     return absl::InvalidArgumentError(absl::StrCat("not an InVesalius project: ", size.status().message()));

@@ -67,7 +67,7 @@ class DrainTest : protected ServiceManagerStandIn, public ServiceTest {
   /// All there are but for those that only look at, change or end what is there.
   static std::vector<std::string> methods_that_begin_something() {
     const std::regex others(
-        R"((Get|List|Wait|Download|Export|Evaluate|Acknowledge|Update|Pause|Stop|Cancel|Delete).*)");
+        R"((Get|List|Check|Wait|Download|Export|Evaluate|Acknowledge|Update|Pause|Stop|Cancel|Delete).*)");
     std::vector<std::string> methods;
     for (const google::protobuf::FileDescriptor* file :
          {v1::WatchRequest::descriptor()->file(), v1::GetOperationRequest::descriptor()->file(),

@@ -34,7 +34,8 @@ TEST_F(PlanCheckTest, FindsZonesWhereASimulationHasThem) {
   EXPECT_EQ(response.zones(0).name(), "middle");
   EXPECT_EQ(response.zones(0).film_cells(), 9u);
   EXPECT_GT(response.zones(0).area_cm2(), 0.0);
-  EXPECT_EQ(response.zones(0).outline(0).points_mm_size(), 12) << "around three by three cells";
+  ASSERT_EQ(response.zones(0).outline_size(), 1);
+  EXPECT_GE(response.zones(0).outline(0).points_mm_size(), 12) << "around three by three cells";
   EXPECT_EQ(count_simulations(), 0);
 
   v1::Simulation simulation;

@@ -29,6 +29,7 @@ TEST(LeakyWall, LetsTwoChambersLevelAtItsRate) {
   spec.films[0].rest_thickness = ScalarField::constant(0.1e-3);
   spec.films[0].initial_thickness = ScalarField{4, 1, {2e-3, 2e-3, 1e-3, 1e-3}};
   spec.films[0].zones = {{"one", ChartBox{0.0, 0.5, 0.0, 1.0}}, {"two", ChartBox{0.5, 1.0, 0.0, 1.0}}};
+  spec.films[0].edge.outline = plan::ZoneOutline::kCells;
   spec.films[0].zones[0].shape = ChartBox{0.0, 0.34, 0.0, 1.0};
   spec.films[0].zones[1].shape = ChartBox{0.34, 1.0, 0.0, 1.0};
   spec.films[0].walls = {{"septum", {}, {"one", "two"}, leakage}};

@@ -32,7 +32,8 @@ struct FilmLayout {
   ZoneBond bond;                                             ///< of the two walls, kTissue only
   std::vector<std::string> remarks;                          ///< zones that lie on the film in part, a sentence each
 
-  /// The slot of the film's grid over a place, -1 outside its extent; and the cell whose slot it is, -1: none.
+  /// The slot of the film's grid over a place, -1 outside its extent; and the cell whose slot it
+  /// is, -1: none.
   int slot_at(const geometry::ChartPoint& place) const;
   int cell_at(const geometry::ChartPoint& place) const;
   geometry::ChartPoint cell_centre(int cell) const;

@@ -43,7 +43,8 @@ absl::StatusOr<TarArchive> TarArchive::open(const std::filesystem::path& file) {
   if (stream == nullptr) return absl::ResourceExhaustedError(absl::StrCat("no memory to read ", tar.file_));
   archive_read_support_filter_gzip(stream);
   archive_read_support_format_tar(stream);
-  if (!is_usable(archive_read_open_filename(stream, file.c_str(), kReadAtOnce))) return tar.explain("is not a tar, gzipped or not");
+  if (!is_usable(archive_read_open_filename(stream, file.c_str(), kReadAtOnce)))
+    return tar.explain("is not a tar, gzipped or not");
   return tar;
 }
 

@@ -98,7 +98,7 @@ TEST_F(RunTest, SummaryAndSeriesAgreeAndTwoRunsAreTheSame) {
 
 TEST_F(RunTest, FastGivesTheSettledShapeInFewSteps) {
   write_plan("settles.json", "/simulation/time",
-             {{"step_ms", 10}, {"max_step_ms", 100}, {"end_s", 300}, {"settle_skin_speed_mm_per_s", 0.01}});
+             {{"step_ms", 10}, {"max_step_ms", 100}, {"end_s", 300}, {"settle_skin_speed_mm_per_s", 0.001}});
   const std::string options = " --spawn --discard --no-picture --quiet --interval-ms 0";
   const auto watched = answer_of("lipofill run settles.json --out a" + options);
   const auto fast = answer_of("lipofill run settles.json --out b --fast" + options);

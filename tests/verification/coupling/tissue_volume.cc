@@ -19,9 +19,9 @@ constexpr double kInjected = 1e-6;
 constexpr double kRadius = 12e-3;
 constexpr double kTissueKept = 0.005;
 
-plan::SimulationSpec make_plan(const std::string& below) {
+plan::SimulationSpec make_plan(const model::FaceModel& model, const std::string& below) {
   plan::SimulationSpec spec;
-  spec.films = {make_film(plan::FilmWallKind::kTissue, 20, 20)};
+  spec.films = {make_film(plan::FilmWallKind::kTissue, model.geometry.grid.n_xi / 2, model.geometry.grid.n_eta / 2)};
   spec.films[0].below_layer = below;
   spec.films[0].zones = {{"pocket", plan::Disc{ChartPoint{0.5, 0.5}, kRadius}}};
   spec.films[0].rest_thickness = ScalarField::constant(0.05e-3);
@@ -44,7 +44,7 @@ std::shared_ptr<const model::FaceModel> build_with_law(model::FaceModelSpec spec
 }
 
 KeptVolume fill_disc(const std::shared_ptr<const model::FaceModel>& model, const std::string& below) {
-  auto simulation = make_simulation(model, make_plan(below));
+  auto simulation = make_simulation(model, make_plan(*model, below));
   if (!simulation) return {};
   while (simulation->phase() == Phase::kRunning) simulation->advance_step();
   EXPECT_EQ(simulation->phase(), Phase::kSettled) << below << ": " << simulation->reason();

@@ -98,7 +98,7 @@ TEST_F(RunTest, SummaryAndSeriesAgreeAndTwoRunsAreTheSame) {
 
 TEST_F(RunTest, FastGivesTheSettledShapeInFewSteps) {
   write_plan("settles.json", "/simulation/time",
-             {{"step_ms", 10}, {"max_step_ms", 100}, {"end_s", 300}, {"settle_skin_speed_mm_per_s", 0.001}});
+             {{"step_ms", 10}, {"max_step_ms", 100}, {"end_s", 300}, {"settle_skin_speed_mm_per_s", 0.01}});
   const std::string options = " --spawn --discard --no-picture --quiet --interval-ms 0";
   const auto watched = answer_of("lipofill run settles.json --out a" + options);
   const auto fast = answer_of("lipofill run settles.json --out b --fast" + options);
@@ -107,7 +107,8 @@ TEST_F(RunTest, FastGivesTheSettledShapeInFewSteps) {
   EXPECT_LT(3 * fast["steps"].get<int>(), watched["steps"].get<int>());
   EXPECT_NEAR(fast["injected_ml"].get<double>(), 0.3, 1e-12);
   EXPECT_LT(fast["gap_volume_relative_error"].get<double>(), 1e-4);
-  EXPECT_NEAR(fast["skin_max_displacement_mm"].get<double>(), watched["skin_max_displacement_mm"].get<double>(), 0.05);
+  EXPECT_NEAR(fast["skin_max_displacement_mm"].get<double>(), watched["skin_max_displacement_mm"].get<double>(), 0.12)
+      << "at 0.01 mm/s the watched one has a tenth of a millimetre still to go";
 }
 
 TEST_F(RunTest, PreviewIsToldFirstAndMeasuredInTheEnd) {

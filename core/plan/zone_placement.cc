@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "core/geometry/cut_rectangle.h"
 #include "core/plan/zone_levels.h"
 #include "core/plan/zone_share.h"
@@ -21,6 +22,8 @@ using geometry::Level;
 /// Share of a slot that makes a cell of its own: thinner ones would have pressures of hardly any
 /// weight.
 constexpr double kLeastOfCell = 0.25;
+/// Less than this share of the zones is not told of.
+constexpr double kToldShare = 0.002;
 
 double share_of(const SlotCover& cover) {
   return 0.25 * std::accumulate(cover.begin(), cover.end(), 0.0);
@@ -188,6 +191,14 @@ void take_whole_slots(const FilmSpec& spec, const std::vector<Shape>& shapes, Pl
 
 }  // namespace
 
+double PlacedZones::uncounted_share() const {
+  double counted = 0.0;
+  for (size_t slot = 0; slot < zone_of_slot.size(); ++slot)
+    counted += zone_of_slot[slot] < 0 ? 0.0 : share_of(cover[slot]);
+  for (const film::SlotFragment& fragment : fragments) counted += share_of(fragment.cover);
+  return uncounted > 0.0 ? uncounted / (counted + uncounted) : 0.0;
+}
+
 PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, FieldViolations& violations,
                         std::vector<std::string>& remarks) {
   PlacedZones placed;
@@ -209,6 +220,12 @@ PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, Fie
     give_slots_to_zones(spec, covers, placed);
     place_small_zones(covers, placed);
     hand_out_fragments(spec, covers, placed);
+  }
+  if (const double share = placed.uncounted_share(); share > kToldShare) {
+    remarks.push_back(
+        absl::StrFormat("Film %s: slivers that no cell can take make up %.1f %% of its zones; they get no fat. A finer "
+                        "film grid has smaller ones.",
+                        spec.name, 100.0 * share));
   }
   for (size_t z = 0; z < shapes.size(); ++z) {
     if (std::find(placed.zone_of_slot.begin(), placed.zone_of_slot.end(), static_cast<int>(z)) !=

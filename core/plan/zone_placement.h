@@ -23,14 +23,14 @@ struct PlacedZones {
   std::vector<std::vector<geometry::Level>> cutting;
   std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< of each zone, twice as fine as the grid of the tissue
   double uncounted = 0.0;                                    ///< slots' worth of zones that no cell could take
+  double uncounted_share() const;                            ///< the same, of all that the zones cover
 };
 
 /// Finds the cells of each zone. Where zones overlap the earlier one has the place. With
 /// ZoneOutline::kCurve the outlines cut the slots they cross; a slot of which a zone covers less
 /// than a quarter, or less than another zone, counts as part of the zone's cell beside it. Field
-/// violations are named "zones[index]" and below; remarks say what of a zone lies outside the film.
-/// Checked by
-/// tests/unit/plan/zone_placement_test.cc.
+/// violations are named "zones[index]" and below; remarks say what of a zone lies outside the film
+/// or in no cell. Checked by tests/unit/plan/zone_placement_test.cc.
 PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, FieldViolations& violations,
                         std::vector<std::string>& remarks);
 

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/anatomy/regions.h"
+#include "core/anatomy/smooth_step.h"
 #include "core/base/field_violations.h"
 #include "core/base/units.h"
 #include "core/geometry/surface_chart.h"
@@ -61,11 +62,6 @@ absl::StatusOr<std::vector<PlacedFigure>> place_figures(const geometry::FaceGeom
   }
   return field_violation("", absl::StrCat("is asked for ", std::string(name_of(kind)),
                                           ", which has no regional figure; skin, subcutaneous and muscle have"));
-}
-
-double smooth_step(double u) {
-  const double v = std::clamp(u, 0.0, 1.0);
-  return v * v * (3.0 - 2.0 * v);
 }
 
 }  // namespace

@@ -67,20 +67,12 @@ void fill_harmonically(const LayeredGrid& grid, Eigen::VectorXd& values) {
   }
 }
 
-void smooth(const LayeredGrid& grid, double length, Eigen::VectorXd& values) {
-  const Eigen::Vector2d spacing =
-      compute_mean_spacing(grid.n_xi, grid.n_eta, grid.nodes.leftCols(grid.nodes_per_level()));
-  Eigen::Matrix3Xd rows = Eigen::Matrix3Xd::Zero(3, values.size());
-  rows.row(0) = values.transpose();
-  smooth_over_grid(grid.n_xi, grid.n_eta, spacing, length, rows);
-  values = rows.row(0).transpose();
-}
-
 }  // namespace
 
 absl::StatusOr<BoneDepth> measure_bone_depth(const LayeredGrid& grid, const SurfaceMesh& bone, double smoothing) {
   if (const absl::Status valid = check_indices("scan_region.bone_scan", bone); !valid.ok()) return valid;
-  BoneDepth result{cast_rays(grid, bone), 0.0};
+  BoneDepth result{cast_rays(grid, bone), 0.0, {}};
+  result.missed = (!result.depth.array().isFinite()).cast<double>();
   const auto measured = result.depth.array().isFinite().count();
   result.measured_share = static_cast<double>(measured) / static_cast<double>(result.depth.size());
   if (!(result.measured_share >= kLeastMeasuredShare)) {
@@ -91,8 +83,17 @@ absl::StatusOr<BoneDepth> measure_bone_depth(const LayeredGrid& grid, const Surf
                         100.0 * result.measured_share, kDeepestBone * 1e3, 100.0 * kLeastMeasuredShare));
   }
   fill_harmonically(grid, result.depth);
-  smooth(grid, smoothing, result.depth);
+  smooth_over_skin(grid, smoothing, result.depth);
   return result;
+}
+
+void smooth_over_skin(const LayeredGrid& grid, double length, Eigen::VectorXd& values) {
+  const Eigen::Vector2d spacing =
+      compute_mean_spacing(grid.n_xi, grid.n_eta, grid.nodes.leftCols(grid.nodes_per_level()));
+  Eigen::Matrix3Xd rows = Eigen::Matrix3Xd::Zero(3, values.size());
+  rows.row(0) = values.transpose();
+  smooth_over_grid(grid.n_xi, grid.n_eta, spacing, length, rows);
+  values = rows.row(0).transpose();
 }
 
 }  // namespace lipofill::geometry

@@ -12,6 +12,7 @@ namespace lipofill::geometry {
 struct BoneDepth {
   Eigen::VectorXd depth;        ///< [m] along the inward normal, a value a node of the skin; filled and smoothed
   double measured_share = 0.0;  ///< the share of nodes whose ray met bone
+  Eigen::VectorXd missed;       ///< 1 at a node whose ray met no bone, else 0
 };
 
 /// Deeper bone than this belongs to another part of the head [m].
@@ -31,5 +32,8 @@ inline constexpr double kLeastMeasuredShare = 0.25;
 /// smoothing. Checked by tests/unit/geometry/bone_depth_test.cc: a sphere out of the middle of
 /// another.
 absl::StatusOr<BoneDepth> measure_bone_depth(const LayeredGrid& grid, const SurfaceMesh& bone, double smoothing);
+
+/// Smooths values at the nodes of a skin, in place: smooth_over_grid() with the skin's own spacing.
+void smooth_over_skin(const LayeredGrid& grid, double length, Eigen::VectorXd& values);
 
 }  // namespace lipofill::geometry

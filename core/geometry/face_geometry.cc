@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/base/field_violations.h"
+#include "core/geometry/default_size.h"
 #include "core/geometry/extrusion.h"
 #include "core/geometry/scan_region.h"
 #include "core/geometry/skin_projection.h"
@@ -16,6 +17,8 @@
 namespace lipofill::geometry {
 namespace {
 
+/// Divisions of a chart that is only there to be measured.
+constexpr int kTrialDivisions = 16;
 constexpr int kMinDivisions = 2;
 constexpr int kMaxDivisions = 512;
 constexpr int kMaxLayers = 8;
@@ -26,7 +29,9 @@ constexpr double kShortestSquareMm = 1.0;
 constexpr double kLongestSquareMm = 1000.0;
 
 void check_layer(const LayerGeometry& layer, const std::string& field, FieldViolations& violations) {
-  violations.check_range(field + ".elements_through", layer.elements_through, 1, kMaxElementsThrough, "");
+  if (layer.elements_through != 0) {
+    violations.check_range(field + ".elements_through", layer.elements_through, 1, kMaxElementsThrough, "");
+  }
   const absl::Status shape = layer.thickness.validate();
   violations.absorb(field + ".thickness_mm", shape);
   if (!shape.ok()) return;
@@ -37,23 +42,26 @@ void check_layer(const LayerGeometry& layer, const std::string& field, FieldViol
                                                        " mm, must be above 0 and at most ", kThickestLayerMm));
 }
 
+/// What is not known yet counts as 1, or as nothing.
+void check_count(const GridSize& size, const std::vector<LayerGeometry>& layers, FieldViolations& violations) {
+  long long through = 0;
+  for (const LayerGeometry& layer : layers) through += std::max(1, layer.elements_through);
+  const long long hexahedra = through * size.n_xi * size.n_eta;
+  if (hexahedra <= kMaxHexahedra) return;
+  violations.add("n_xi", absl::StrCat("is ", size.n_xi, ", which with n_eta ", size.n_eta, " and ", through,
+                                      " elements through the layers makes ", hexahedra, " hexahedra, must be at most ",
+                                      kMaxHexahedra));
+}
+
 void check_layers(const FaceGeometrySpec& spec, FieldViolations& violations) {
   if (spec.layers.size() > kMaxLayers) {
     violations.add("layers", absl::StrCat("are ", spec.layers.size(), ", must be at most ", kMaxLayers));
     return;
   }
-  long long through = 0;
   for (size_t l = 0; l < spec.layers.size(); ++l) {
     check_layer(spec.layers[l], absl::StrCat("layers[", l, "]"), violations);
-    through += spec.layers[l].elements_through;
   }
-  if (!violations.empty()) return;
-  const long long hexahedra = through * spec.n_xi * spec.n_eta;
-  if (hexahedra > kMaxHexahedra) {
-    violations.add("n_xi", absl::StrCat("is ", spec.n_xi, ", which with n_eta ", spec.n_eta, " and ", through,
-                                        " elements through the layers makes ", hexahedra,
-                                        " hexahedra, must be at most ", kMaxHexahedra));
-  }
+  if (violations.empty()) check_count({spec.n_xi, spec.n_eta}, spec.layers, violations);
 }
 
 absl::Status report(const Progress& progress, double fraction, const char* stage) {
@@ -79,15 +87,40 @@ double compute_skin_area(const LayeredGrid& grid) {
   return area;
 }
 
+/// The divisions that are asked for, and the default for those that are not.
+GridSize complete_size(const FaceGeometrySpec& spec, const GridSize& by_default) {
+  return {spec.n_xi > 0 ? spec.n_xi : by_default.n_xi, spec.n_eta > 0 ? spec.n_eta : by_default.n_eta};
+}
+
+/// The layers with hexahedra through all of them.
+std::vector<LayerGeometry> complete_layers(std::vector<LayerGeometry> layers, const Eigen::Matrix3Xd& skin,
+                                           const GridSize& size) {
+  const double width = compute_mean_spacing(size.n_xi, size.n_eta, skin).mean();
+  for (LayerGeometry& layer : layers) {
+    if (layer.elements_through == 0) layer.elements_through = choose_elements_through(layer.thickness.mean(), width);
+  }
+  return layers;
+}
+
+absl::StatusOr<LayeredGrid> lay_on(const Eigen::Matrix3Xd& skin, const GridSize& size,
+                                   const std::vector<LayerGeometry>& given) {
+  const std::vector<LayerGeometry> layers = complete_layers(given, skin, size);
+  FieldViolations violations;
+  check_count(size, layers, violations);
+  if (!violations.empty()) return violations.to_status();
+  return extrude_layers(skin, size.n_xi, size.n_eta, layers);
+}
+
 absl::StatusOr<FaceGeometry> build_square(const SquareSpec& square, const FaceGeometrySpec& spec) {
-  Eigen::Matrix3Xd skin(3, (spec.n_xi + 1) * (spec.n_eta + 1));
-  for (int j = 0; j <= spec.n_eta; ++j) {
-    for (int i = 0; i <= spec.n_xi; ++i) {
-      skin.col(j * (spec.n_xi + 1) + i) =
-          Eigen::Vector3d(square.length_xi * i / spec.n_xi, square.length_eta * j / spec.n_eta, 0.0);
+  const GridSize size = complete_size(spec, choose_grid_size({square.length_xi, square.length_eta}, {}));
+  Eigen::Matrix3Xd skin(3, (size.n_xi + 1) * (size.n_eta + 1));
+  for (int j = 0; j <= size.n_eta; ++j) {
+    for (int i = 0; i <= size.n_xi; ++i) {
+      skin.col(j * (size.n_xi + 1) + i) =
+          Eigen::Vector3d(square.length_xi * i / size.n_xi, square.length_eta * j / size.n_eta, 0.0);
     }
   }
-  auto grid = extrude_layers(skin, spec.n_xi, spec.n_eta, spec.layers);
+  auto grid = lay_on(skin, size, spec.layers);
   if (!grid.ok()) return grid.status();
   FaceGeometry geometry;
   geometry.grid = std::move(*grid);
@@ -133,13 +166,26 @@ void find_riders(const ScanRegion& region, const std::vector<bool>& is_vertex_ne
 }
 
 /// The chart between the corners, or around the footprints with what there is to say of it.
-absl::StatusOr<RegionChart> chart_scan_region(const ScanRegion& region, const FaceGeometrySpec& spec,
+absl::StatusOr<RegionChart> chart_scan_region(const ScanRegion& region, const GridSize& size,
                                               std::vector<std::string>& cautions) {
-  if (!region.around) return chart_region(region.patch, spec.n_xi, spec.n_eta);
-  auto around = chart_around(region.patch, *region.around, spec.n_xi, spec.n_eta);
+  if (!region.around) return chart_region(region.patch, size.n_xi, size.n_eta);
+  auto around = chart_around(region.patch, *region.around, size.n_xi, size.n_eta);
   if (!around.ok()) return around.status();
   cautions.insert(cautions.end(), around->remarks.begin(), around->remarks.end());
   return std::move(around->chart);
+}
+
+/// The divisions of the region's chart; where one is not given, the chart is made once to be
+/// measured.
+absl::StatusOr<GridSize> find_size(const ScanRegion& region, const std::vector<Footprint>& footprints,
+                                   const FaceGeometrySpec& spec) {
+  if (spec.n_xi > 0 && spec.n_eta > 0) return GridSize{spec.n_xi, spec.n_eta};
+  std::vector<std::string> told_later;
+  const auto trial = chart_scan_region(region, {kTrialDivisions, kTrialDivisions}, told_later);
+  if (!trial.ok()) return trial.status();
+  const Eigen::Vector2d lengths =
+      kTrialDivisions * compute_mean_spacing(kTrialDivisions, kTrialDivisions, trial->points);
+  return complete_size(spec, choose_grid_size(lengths, footprints));
 }
 
 absl::StatusOr<FaceGeometry> build_scan_region(const ScanRegionSpec& scan, const FaceGeometrySpec& spec,
@@ -147,14 +193,16 @@ absl::StatusOr<FaceGeometry> build_scan_region(const ScanRegionSpec& scan, const
   auto region = find_scan_region(scan, progress);
   if (!region.ok()) return region.status();
   if (const absl::Status go = report(progress, 0.6, "charting the skin"); !go.ok()) return go;
-  auto chart = chart_scan_region(*region, spec, region->cautions);
+  const auto size = find_size(*region, scan.footprints, spec);
+  if (!size.ok()) return size.status();
+  auto chart = chart_scan_region(*region, *size, region->cautions);
   if (!chart.ok()) return chart.status();
   Eigen::Matrix3Xd& skin = chart->points;
-  const Eigen::Vector2d spacing = compute_mean_spacing(spec.n_xi, spec.n_eta, skin);
-  smooth_over_grid(spec.n_xi, spec.n_eta, spacing, choose_smoothing_length(region->patch.mesh, spacing), skin);
+  const Eigen::Vector2d spacing = compute_mean_spacing(size->n_xi, size->n_eta, skin);
+  smooth_over_grid(size->n_xi, size->n_eta, spacing, choose_smoothing_length(region->patch.mesh, spacing), skin);
 
   if (const absl::Status go = report(progress, 0.8, "extruding the layers"); !go.ok()) return go;
-  auto grid = extrude_layers(skin, spec.n_xi, spec.n_eta, spec.layers);
+  auto grid = lay_on(skin, *size, spec.layers);
   if (!grid.ok()) return grid.status();
   FaceGeometry geometry;
   geometry.grid = std::move(*grid);
@@ -173,8 +221,8 @@ absl::StatusOr<FaceGeometry> build_scan_region(const ScanRegionSpec& scan, const
 
 absl::Status check_face_geometry(const FaceGeometrySpec& spec) {
   FieldViolations violations;
-  violations.check_range("n_xi", spec.n_xi, kMinDivisions, kMaxDivisions, "");
-  violations.check_range("n_eta", spec.n_eta, kMinDivisions, kMaxDivisions, "");
+  if (spec.n_xi != 0) violations.check_range("n_xi", spec.n_xi, kMinDivisions, kMaxDivisions, "");
+  if (spec.n_eta != 0) violations.check_range("n_eta", spec.n_eta, kMinDivisions, kMaxDivisions, "");
   if (const auto* square = std::get_if<SquareSpec>(&spec.region)) {
     violations.check_range("square.length_xi_mm", square->length_xi * 1e3, kShortestSquareMm, kLongestSquareMm, "mm");
     violations.check_range("square.length_eta_mm", square->length_eta * 1e3, kShortestSquareMm, kLongestSquareMm, "mm");
@@ -191,8 +239,7 @@ absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& 
   FieldViolations violations;
   check_layers(spec, violations);
   if (!violations.empty()) return violations.to_status();
-  auto grid =
-      extrude_layers(geometry.grid.nodes.leftCols(geometry.grid.nodes_per_level()), spec.n_xi, spec.n_eta, layers);
+  auto grid = lay_on(geometry.grid.nodes.leftCols(geometry.grid.nodes_per_level()), {spec.n_xi, spec.n_eta}, layers);
   if (!grid.ok()) return grid.status();
   geometry.grid = *std::move(grid);
   return absl::OkStatus();

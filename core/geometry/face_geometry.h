@@ -54,14 +54,14 @@ struct ScanRegionSpec {
 };
 
 struct LayerGeometry {
-  ScalarField thickness;  ///< [m]
-  int elements_through = 1;
+  ScalarField thickness;     ///< [m]
+  int elements_through = 1;  ///< 0: they follow from thickness and width (default_size.h)
 };
 
 struct FaceGeometrySpec {
   std::variant<SquareSpec, ScanRegionSpec> region;
-  int n_xi = 0;
-  int n_eta = 0;
+  int n_xi = 0;                       ///< 0: it follows from the size of the region (default_size.h)
+  int n_eta = 0;                      ///< the same
   std::vector<LayerGeometry> layers;  ///< they go from the skin inwards
 };
 

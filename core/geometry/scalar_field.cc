@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
@@ -43,6 +44,10 @@ double ScalarField::minimum() const {
 
 double ScalarField::maximum() const {
   return *std::max_element(values.begin(), values.end());
+}
+
+double ScalarField::mean() const {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 absl::Status ScalarField::validate() const {

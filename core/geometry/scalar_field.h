@@ -20,6 +20,8 @@ struct ScalarField {
   double at(double xi, double eta) const;
   double minimum() const;
   double maximum() const;
+  /// Mean of the samples.
+  double mean() const;
 
   /// Checks the field. INVALID_ARGUMENT with the field violation "" when the shape and the number
   /// of values disagree, either count is 0 or above 4096, or a value is not finite.

@@ -23,13 +23,33 @@ class SupportBuilder {
   }
 
   void hold_face(const model::Support& support, int axis, const std::vector<std::array<int, 4>>& quads) {
-    if (support.kind == model::SupportKind::kFree) return;
+    if (support.kind == model::SupportKind::kFree || support.kind == model::SupportKind::kByRegion) return;
     for (const std::array<int, 4>& quad : quads) {
       for (const int node : quad) {
         if (support.kind == model::SupportKind::kClamped) supports_.fixed[node] = {true, true, true};
         if (support.kind == model::SupportKind::kRollers) supports_.fixed[node][axis] = true;
         if (support.kind == model::SupportKind::kElastic)
           supports_.spring[node] += 0.25 * support.stiffness * area(quad);
+      }
+    }
+  }
+
+  /// Holds the deep face by its give c: the springs of what lies beneath and of bone, which gives
+  /// nothing, in series, so that their stiffness per area is `stiffness` / c.
+  void hold_by_give(double stiffness, const Eigen::VectorXd& give) {
+    const std::vector<std::array<int, 4>> quads = base();
+    for (size_t q = 0; q < quads.size(); ++q) {
+      const int i = static_cast<int>(q) % grid_.n_xi;
+      const int j = static_cast<int>(q) / grid_.n_xi;
+      const std::array<int, 4> places = {grid_.surface_index(i, j), grid_.surface_index(i + 1, j),
+                                         grid_.surface_index(i + 1, j + 1), grid_.surface_index(i, j + 1)};
+      for (size_t c = 0; c < 4; ++c) {
+        const double here = give[places[c]];
+        if (here <= model::kLeastGive) {
+          supports_.fixed[quads[q][c]] = {true, true, true};
+        } else {
+          supports_.spring[quads[q][c]] += 0.25 * stiffness / here * area(quads[q]);
+        }
       }
     }
   }
@@ -84,6 +104,7 @@ class SupportBuilder {
 solid::NodeSupports hold_nodes(const model::FaceModel& model, const SplitMesh& split) {
   SupportBuilder builder(model.geometry.grid, split);
   builder.hold_face(model.base, 2, builder.base());
+  if (model.base.kind == model::SupportKind::kByRegion) builder.hold_by_give(model.base.stiffness, model.base_give);
   for (const bool high : {false, true}) {
     builder.hold_face(model.rim, 0, builder.side(true, high));
     builder.hold_face(model.rim, 1, builder.side(false, high));

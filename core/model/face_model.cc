@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "core/anatomy/base_give.h"
 #include "core/base/field_violations.h"
 #include "core/base/hash.h"
 #include "core/base/units.h"
@@ -29,12 +30,15 @@ void check_layer(const TissueLayerSpec& layer, const std::string& field, FieldVi
 }
 
 void check_support(const Support& support, const char* field, bool is_square, FieldViolations& violations) {
-  if (support.kind == SupportKind::kElastic) {
+  if (support.kind == SupportKind::kElastic || support.kind == SupportKind::kByRegion) {
     violations.check_range(absl::StrCat(field, ".stiffness_kpa_per_mm"),
                            support.stiffness / kPascalsPerMetrePerKilopascalPerMillimetre, 1e-9, 1e9, "kPa/mm");
   }
   if (support.kind == SupportKind::kRollers && !is_square) {
     violations.add(absl::StrCat(field, ".kind"), "is ROLLERS, which needs a square: a scan's sides are not planes");
+  }
+  if (support.kind == SupportKind::kByRegion && is_square) {
+    violations.add(absl::StrCat(field, ".kind"), "is BY_REGION, which needs a scan_region: a square has no anatomy");
   }
 }
 
@@ -98,6 +102,10 @@ std::string compute_content_hash(const FaceModel& model) {
   hasher.add(model.is_square);
   add_prestress(hasher, model.layers);
   add_laws(hasher, model.layers);
+  if (model.base_give.size() > 0) {
+    hasher.add("base give");
+    hasher.add_bytes(model.base_give.data(), static_cast<size_t>(model.base_give.size()) * sizeof(double));
+  }
   return hasher.hex_digest();
 }
 
@@ -159,6 +167,31 @@ void check_around(const FaceModelSpec& spec, FieldViolations& violations) {
   violations.absorb(absl::IsInvalidArgument(found) ? "" : "scan_region.landmarks_mm", found);
 }
 
+/// Places bone and what gives under the tissue: as measured where a layer goes down to the bone,
+/// else by the landmarks. Says what it assumed.
+void lay_base(const FaceModelSpec& spec, const LayerThickness& thickness, FaceModel& model) {
+  model.base = spec.base;
+  if (spec.base.kind != SupportKind::kByRegion) return;
+  std::vector<std::string>& remarks = model.geometry.cautions;
+  if (thickness.bone) {
+    model.base_give = thickness.off_bone.cwiseMax(0.0).cwiseMin(1.0);
+  } else if (auto give = anatomy::compute_base_give(model.geometry)) {
+    model.base_give = *std::move(give);
+  } else {
+    model.base = {SupportKind::kClamped, 0.0};
+    remarks.push_back(
+        "Bone is assumed under the whole region: the landmarks zygion, gonion and cheilion of a side, _left or "
+        "_right, would show where there is none.");
+    return;
+  }
+  if (model.base_give.maxCoeff() <= kLeastGive) return;
+  remarks.push_back(absl::StrFormat(
+      "No bone lies beneath %.0f %% of the region%s: the tissue rests there on springs of %.2f kPa/mm%s.",
+      100.0 * model.base_give.mean(), thickness.bone ? " by the scan of the bone" : " by the landmarks",
+      spec.base.stiffness / kPascalsPerMetrePerKilopascalPerMillimetre,
+      spec.base.stiffness == anatomy::kSoftBaseStiffness ? ", an assumed figure (base.stiffness_kpa_per_mm)" : ""));
+}
+
 }  // namespace
 
 absl::Status check_face_model(const FaceModelSpec& spec) {
@@ -176,6 +209,9 @@ absl::Status check_face_model(const FaceModelSpec& spec) {
   check_thickness_requests(spec, violations);
   check_around(spec, violations);
   check_support(spec.rim, "rim", is_square, violations);
+  if (spec.rim.kind == SupportKind::kByRegion) {
+    violations.add("rim.kind", "is BY_REGION, which only a base can be; must be CLAMPED, FREE or ELASTIC");
+  }
   check_support(spec.base, "base", is_square, violations);
   return violations.to_status();
 }
@@ -201,11 +237,13 @@ absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceMode
 
   model->geometry = *std::move(face);
   model->layers = spec.layers;
-  for (size_t l = 0; l < layers.size(); ++l) model->layers[l].geometry = std::move(layers[l]);
+  for (size_t l = 0; l < layers.size(); ++l) {
+    model->layers[l].geometry = {std::move(layers[l].thickness), model->geometry.grid.elements_through[l]};
+  }
   model->thickness = std::move(thickness->ranges);
   model->bone = thickness->bone;
   model->rim = spec.rim;
-  model->base = spec.base;
+  lay_base(spec, *thickness, *model);
   model->content_hash = compute_content_hash(*model);
   if (progress && !progress(1.0, "done")) return absl::CancelledError("building was cancelled");
   return std::shared_ptr<const FaceModel>(std::move(model));

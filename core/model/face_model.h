@@ -13,13 +13,17 @@
 
 namespace lipofill::model {
 
-enum class SupportKind { kClamped, kRollers, kFree, kElastic };
+/// kByRegion is for a base only: bone where the face has bone, springs where it has none.
+enum class SupportKind { kClamped, kRollers, kFree, kElastic, kByRegion };
 
 /// The way a side or the base of the tissue is held.
 struct Support {
   SupportKind kind = SupportKind::kClamped;
-  double stiffness = 0.0;  ///< [Pa/m], kElastic only
+  double stiffness = 0.0;  ///< [Pa/m], kElastic; kByRegion where no bone lies beneath
 };
+
+/// A base that gives less than this counts as bone.
+inline constexpr double kLeastGive = 0.02;
 
 /// A layer takes what the others leave of the distance from skin to bone.
 struct DownToBone {
@@ -30,7 +34,7 @@ struct DownToBone {
 
 struct TissueLayerSpec {
   std::string name;
-  geometry::LayerGeometry geometry;  ///< a built model has the thickness it came to
+  geometry::LayerGeometry geometry;  ///< a built model has what it came to
   solid::ElasticMaterial material;
   std::optional<anatomy::TissueKind> kind = std::nullopt;
   bool regional_thickness = false;  ///< published figures of the kind in some regions, the thickness outside
@@ -53,8 +57,8 @@ struct AroundSpec {
 /// All that a model is made from; lipofill.v1.ModelSpec in SI.
 struct FaceModelSpec {
   std::variant<geometry::SquareSpec, geometry::ScanRegionSpec> region;
-  int n_xi = 0;
-  int n_eta = 0;
+  int n_xi = 0;   ///< 0: it follows from the size of the region (geometry/default_size.h)
+  int n_eta = 0;  ///< the same
   std::vector<TissueLayerSpec> layers;
   Support rim;
   Support base;
@@ -85,6 +89,7 @@ struct FaceModel {
   std::vector<TissueLayerSpec> layers;
   Support rim;
   Support base;
+  Eigen::VectorXd base_give;              ///< (nodes_per_level) see anatomy/base_give.h; kByRegion only
   std::vector<ThicknessRange> thickness;  ///< there is a range for each layer
   std::optional<BoneFinding> bone;
   bool is_square = false;

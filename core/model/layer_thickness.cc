@@ -64,11 +64,9 @@ ThicknessRange range_of(const Eigen::VectorXd& values) {
   return {values.minCoeff(), values.mean(), values.maxCoeff()};
 }
 
-/// Returns the part of `depth` that the `others` leave, limited to the bounds, and notes the share
-/// of nodes that were limited.
+/// Returns the part of `depth` that the `others` leave; below the least thickness is an error.
 absl::StatusOr<Eigen::VectorXd> take_rest(const geometry::LayeredGrid& grid, const Eigen::VectorXd& depth,
-                                          const Eigen::VectorXd& others, size_t index, const DownToBone& bounds,
-                                          BoneFinding& finding) {
+                                          const Eigen::VectorXd& others, size_t index, const DownToBone& bounds) {
   Eigen::VectorXd rest = depth - others;
   Eigen::Index thinnest = 0;
   if (rest.minCoeff(&thinnest) < bounds.min_thickness) {
@@ -82,16 +80,14 @@ absl::StatusOr<Eigen::VectorXd> take_rest(const geometry::LayeredGrid& grid, con
             rest[thinnest] * 1e3, at.x(), at.y(), at.z(), depth[thinnest] * 1e3, others[thinnest] * 1e3,
             bounds.min_thickness * 1e3, 100.0 * static_cast<double>(count) / static_cast<double>(rest.size())));
   }
-  finding.limited_share =
-      static_cast<double>((rest.array() > bounds.max_thickness).count()) / static_cast<double>(rest.size());
-  rest = rest.cwiseMin(bounds.max_thickness);
   return rest;
 }
 
 /// Gives the layer at `index` what the others leave of the distance to the bone.
 absl::Status go_down_to_bone(const geometry::LayeredGrid& grid, const FaceModelSpec& spec, size_t index,
                              std::vector<Eigen::VectorXd>& thickness, LayerThickness& result) {
-  const auto measured = geometry::measure_bone_depth(grid, *spec.bone, spec.layers[index].down_to_bone->smoothing);
+  const DownToBone& bounds = *spec.layers[index].down_to_bone;
+  const auto measured = geometry::measure_bone_depth(grid, *spec.bone, bounds.smoothing);
   if (!measured.ok()) return measured.status();
   Eigen::VectorXd others = Eigen::VectorXd::Zero(grid.nodes_per_level());
   for (size_t l = 0; l < thickness.size(); ++l) {
@@ -100,9 +96,13 @@ absl::Status go_down_to_bone(const geometry::LayeredGrid& grid, const FaceModelS
   BoneFinding finding;
   finding.measured_share = measured->measured_share;
   finding.depth = range_of(measured->depth);
-  auto rest = take_rest(grid, measured->depth, others, index, *spec.layers[index].down_to_bone, finding);
+  const auto rest = take_rest(grid, measured->depth, others, index, bounds);
   if (!rest.ok()) return rest.status();
-  thickness[index] = *std::move(rest);
+  const Eigen::VectorXd limited = (rest->array() > bounds.max_thickness).cast<double>();
+  finding.limited_share = limited.mean();
+  result.off_bone = measured->missed.cwiseMax(limited);
+  geometry::smooth_over_skin(grid, bounds.smoothing, result.off_bone);
+  thickness[index] = rest->cwiseMin(bounds.max_thickness);
   result.fields[index] = to_field(thickness[index], grid);
   result.bone = finding;
   return absl::OkStatus();

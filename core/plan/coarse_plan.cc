@@ -38,6 +38,20 @@ Eigen::Vector3d sample_level(const LayeredGrid& grid, int level, const ChartPoin
   return (1 - t) * ((1 - s) * at(0, 0) + s * at(1, 0)) + t * ((1 - s) * at(0, 1) + s * at(1, 1));
 }
 
+/// Values at the nodes of the fine skin, at those of the coarse one.
+Eigen::VectorXd resample(const Eigen::VectorXd& values, const LayeredGrid& fine, const LayeredGrid& coarse) {
+  if (values.size() == 0) return values;
+  const ScalarField field{fine.n_xi + 1, fine.n_eta + 1, {values.begin(), values.end()}};
+  Eigen::VectorXd result(coarse.nodes_per_level());
+  for (int j = 0; j <= coarse.n_eta; ++j) {
+    for (int i = 0; i <= coarse.n_xi; ++i) {
+      result[coarse.surface_index(i, j)] =
+          field.at(static_cast<double>(i) / coarse.n_xi, static_cast<double>(j) / coarse.n_eta);
+    }
+  }
+  return result;
+}
+
 LayeredGrid resample(const LayeredGrid& fine, int n_xi, int n_eta) {
   LayeredGrid coarse;
   coarse.n_xi = n_xi;
@@ -107,7 +121,8 @@ ScalarField average_over_cells(const ScalarField& field, double width_xi, double
   return mean;
 }
 
-FilmSpec coarsen_film(const FilmSpec& spec, const LayeredGrid& fine, const LayeredGrid& coarse) {
+FilmSpec coarsen_film(const FilmSpec& given, const LayeredGrid& fine, const LayeredGrid& coarse) {
+  const FilmSpec spec = with_cells(given, fine);
   const bool on_tissue = spec.wall == FilmWallKind::kTissue;
   const ChartBox& box = spec.extent;
   const Side xi = on_tissue ? coarsen_side(box.xi_min, box.xi_max, spec.n_xi, fine.n_xi, coarse.n_xi)
@@ -164,6 +179,7 @@ std::shared_ptr<const model::FaceModel> coarsen_model(const model::FaceModel& mo
   coarse->layers = model.layers;
   coarse->rim = model.rim;
   coarse->base = model.base;
+  coarse->base_give = resample(model.base_give, grid, coarse->geometry.grid);
   coarse->thickness = model.thickness;
   coarse->is_square = model.is_square;
   Hasher hasher;

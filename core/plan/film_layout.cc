@@ -14,6 +14,8 @@ namespace lipofill::plan {
 namespace {
 
 constexpr int kMaxFilmCells = 65536;
+/// A cell that nobody chose is so many hexahedra wide.
+constexpr int kHexahedraAcrossCell = 2;
 constexpr double kCoarsestRatio = 2.0;
 constexpr double kThickest_mm = 50.0;
 
@@ -131,7 +133,18 @@ geometry::ChartPoint FilmLayout::cell_centre(int cell) const {
           grid.extent.eta_min + (grid.extent.eta_max - grid.extent.eta_min) * j / grid.n_eta};
 }
 
-absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmSpec& spec) {
+FilmSpec with_cells(FilmSpec spec, const geometry::LayeredGrid& tissue) {
+  const auto cells_over = [](double span, int n) {
+    if (!(span > 0.0)) return 1;
+    return std::max(1, static_cast<int>(std::floor(std::min(span, 1.0) * n / kHexahedraAcrossCell + 1e-9)));
+  };
+  if (spec.n_xi == 0) spec.n_xi = cells_over(spec.extent.xi_max - spec.extent.xi_min, tissue.n_xi);
+  if (spec.n_eta == 0) spec.n_eta = cells_over(spec.extent.eta_max - spec.extent.eta_min, tissue.n_eta);
+  return spec;
+}
+
+absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmSpec& given) {
+  const FilmSpec spec = with_cells(given, model.geometry.grid);
   FieldViolations violations;
   if (spec.name.empty()) violations.add("name", "is empty");
   check_box(spec.extent, "extent", violations);

@@ -39,6 +39,10 @@ struct FilmLayout {
   geometry::ChartPoint cell_centre(int cell) const;
 };
 
+/// A film whose numbers of cells are given: cells that nobody chose (0) are as wide as two
+/// hexahedra, the narrowest there may be.
+FilmSpec with_cells(FilmSpec spec, const geometry::LayeredGrid& tissue);
+
 /// Decides which cells belong to which zone and where in the tissue the film lies. On a face a
 /// named region or a disc with less than 0.98 of its area on the film is remarked upon, and refused
 /// below 0.6. Field violations are named below "films[index]", values in the units of

@@ -21,6 +21,12 @@ absl::Status check_size(const v1::ModelSpec& spec, const SizeLimits& limits) {
   return too_large("spec.n_xi", hexahedra, "hexahedra", limits.hexahedra);
 }
 
+absl::Status check_size(const model::FaceModel& model, const SizeLimits& limits) {
+  const int hexahedra = model.geometry.grid.n_hexahedra();
+  if (hexahedra <= limits.hexahedra) return absl::OkStatus();
+  return too_large("spec.n_xi", hexahedra, "hexahedra", limits.hexahedra);
+}
+
 absl::Status check_size(const v1::SimulationSpec& spec, const SizeLimits& limits) {
   double cells = 0.0;
   for (const auto& film : spec.films()) cells += static_cast<double>(film.n_xi()) * film.n_eta();

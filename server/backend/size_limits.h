@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "absl/status/status.h"
+#include "core/model/face_model.h"
 #include "lipofill/v1/model.pb.h"
 #include "lipofill/v1/simulation.pb.h"
 
@@ -20,5 +21,7 @@ struct SizeLimits {
 /// tests/integration/service/admission_test.cc.
 absl::Status check_size(const v1::ModelSpec& spec, const SizeLimits& limits);
 absl::Status check_size(const v1::SimulationSpec& spec, const SizeLimits& limits);
+/// Checks a model that was built: numbers that were left out are known only then.
+absl::Status check_size(const model::FaceModel& model, const SizeLimits& limits);
 
 }  // namespace lipofill::server

@@ -77,6 +77,7 @@ absl::StatusOr<ModelCache::Model> build(Backend& backend, const std::string& ope
   };
   auto model = model::build_face_model(spec, progress);
   if (!model.ok()) return with_prefix("spec", model.status());
+  if (const absl::Status small = check_size(**model, backend.options.sizes); !small.ok()) return small;
   // The last moment at which a cancellation leaves nothing behind.
   if (!operations.report(operation, 1.0, "keeping the model")) {
     return absl::CancelledError("the operation was cancelled");
@@ -94,7 +95,7 @@ absl::StatusOr<std::string> build_and_keep(Backend& backend, const std::string& 
   record.scan = order.scans.skin;
   record.bone_scan = order.scans.bone;
   record.content_hash = (*model)->content_hash;
-  record.spec_message = order.message.SerializeAsString();
+  record.spec_message = with_chosen_sizes(order.message, **model).SerializeAsString();
   record.report_message = to_model_report(**model).SerializeAsString();
   record.create_time_us = now_us();
   const auto kept = backend.store.create_model(record, request);

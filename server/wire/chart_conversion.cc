@@ -16,6 +16,12 @@ int FieldReader::required_count(bool has, uint32_t value, const std::string& fie
   return static_cast<int>(value);
 }
 
+int FieldReader::count_or_choice(bool has, uint32_t value, const std::string& field) const {
+  if (!has) return 0;
+  if (value == 0) wrong(field, "is 0, must be at least 1; leave it out to have it chosen");
+  return required_count(has, value, field);
+}
+
 Eigen::Vector3d read_vector(const v1::Vector3& message, double factor, const FieldReader& reader) {
   return {reader.required(message.has_x(), message.x(), factor, "x"),
           reader.required(message.has_y(), message.y(), factor, "y"),

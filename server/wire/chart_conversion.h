@@ -37,6 +37,8 @@ class FieldReader {
     return has ? value * factor : 0.0;
   }
   int required_count(bool has, uint32_t value, const std::string& field) const;
+  /// The value, of which 0 is a violation, or 0 where there is none: the core chooses.
+  int count_or_choice(bool has, uint32_t value, const std::string& field) const;
 
  private:
   std::string path_;

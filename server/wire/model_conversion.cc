@@ -1,6 +1,7 @@
 #include "server/wire/model_conversion.h"
 
 #include "absl/strings/str_cat.h"
+#include "core/anatomy/base_give.h"
 #include "core/base/units.h"
 #include "server/wire/chart_conversion.h"
 #include "server/wire/tissue_figures.h"
@@ -50,6 +51,12 @@ model::AroundSpec read_around(const v1::Around& message, const FieldReader& read
 model::Support read_support(const v1::Support& message, const FieldReader& reader) {
   model::Support support;
   switch (message.kind()) {
+    case v1::Support::BY_REGION:
+      support.kind = model::SupportKind::kByRegion;
+      support.stiffness = message.has_stiffness_kpa_per_mm()
+                              ? message.stiffness_kpa_per_mm() * kPascalsPerMetrePerKilopascalPerMillimetre
+                              : anatomy::kSoftBaseStiffness;
+      break;
     case v1::Support::ROLLERS:
       support.kind = model::SupportKind::kRollers;
       break;
@@ -111,9 +118,8 @@ model::TissueLayerSpec read_layer(const v1::TissueLayer& message, const std::str
   if (message.name().empty()) reader.missing("name");
   layer.kind = kind_of(message);
   read_thickness(message, if_missing, reader, layer);
-  if (message.has_elements_through()) {
-    layer.geometry.elements_through = reader.required_count(true, message.elements_through(), "elements_through");
-  }
+  layer.geometry.elements_through =
+      reader.count_or_choice(message.has_elements_through(), message.elements_through(), "elements_through");
   const auto figure = [&](bool has, double value, double factor, const char* field) {
     if (!has) reader.wrong(field, if_missing);
     return value * factor;
@@ -149,8 +155,8 @@ absl::StatusOr<model::FaceModelSpec> to_face_model_spec(const v1::ModelSpec& giv
   } else {
     reader.wrong("square", "is missing, and so is scan_region: one of them says where the model is");
   }
-  spec.n_xi = reader.required_count(message.has_n_xi(), message.n_xi(), "n_xi");
-  spec.n_eta = reader.required_count(message.has_n_eta(), message.n_eta(), "n_eta");
+  spec.n_xi = reader.count_or_choice(message.has_n_xi(), message.n_xi(), "n_xi");
+  spec.n_eta = reader.count_or_choice(message.has_n_eta(), message.n_eta(), "n_eta");
   for (int i = 0; i < message.layers_size(); ++i) {
     const v1::TissueLayer& layer = message.layers(i);
     spec.layers.push_back(read_layer(layer, describe_missing_figure(message, layer), reader.below("layers", i)));

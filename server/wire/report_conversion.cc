@@ -82,6 +82,16 @@ v1::ModelReport to_model_report(const model::FaceModel& model) {
   return report;
 }
 
+v1::ModelSpec with_chosen_sizes(v1::ModelSpec spec, const model::FaceModel& model) {
+  spec.set_n_xi(static_cast<uint32_t>(model.geometry.grid.n_xi));
+  spec.set_n_eta(static_cast<uint32_t>(model.geometry.grid.n_eta));
+  for (int l = 0; l < spec.layers_size(); ++l) {
+    spec.mutable_layers(l)->set_elements_through(
+        static_cast<uint32_t>(model.layers[static_cast<size_t>(l)].geometry.elements_through));
+  }
+  return spec;
+}
+
 v1::ScanReport to_scan_report(const geometry::SurfaceMesh& mesh, const geometry::SurfaceCheck& check) {
   v1::ScanReport report;
   report.set_vertices(static_cast<uint32_t>(mesh.n_vertices()));

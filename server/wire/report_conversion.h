@@ -16,6 +16,9 @@ namespace lipofill::server {
 /// Results of the core, in the units of the wire schema. Checked by
 /// tests/unit/server/wire/report_conversion_test.cc.
 v1::ModelReport to_model_report(const model::FaceModel& model);
+/// A model's specification with the sizes that were chosen where it left them out, so that it gives
+/// the same model for ever.
+v1::ModelSpec with_chosen_sizes(v1::ModelSpec spec, const model::FaceModel& model);
 v1::ScanReport to_scan_report(const geometry::SurfaceMesh& mesh, const geometry::SurfaceCheck& check);
 v1::Summary to_summary(const SessionView& view);
 v1::SeriesRow to_series_row(const SeriesEntry& entry);

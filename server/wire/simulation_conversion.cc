@@ -109,8 +109,8 @@ plan::FilmSpec read_film(const v1::Film& message, const FieldReader& reader) {
   if (message.name().empty()) reader.missing("name");
   film.below_layer = message.below_layer();
   if (message.has_extent()) film.extent = read_box(message.extent(), reader.below("extent"));
-  film.n_xi = reader.required_count(message.has_n_xi(), message.n_xi(), "n_xi");
-  film.n_eta = reader.required_count(message.has_n_eta(), message.n_eta(), "n_eta");
+  film.n_xi = reader.count_or_choice(message.has_n_xi(), message.n_xi(), "n_xi");
+  film.n_eta = reader.count_or_choice(message.has_n_eta(), message.n_eta(), "n_eta");
   for (int i = 0; i < message.zones_size(); ++i) {
     film.zones.push_back(read_zone(message.zones(i), reader.below("zones", i)));
   }

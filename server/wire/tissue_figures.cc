@@ -57,6 +57,10 @@ v1::ModelSpec fill_tissue_figures(v1::ModelSpec spec) {
     if (layer.law() == v1::TissueLayer::LAW_UNSPECIFIED) layer.set_law(law_of(*preset));
     if (const auto kind = kind_of(layer)) fill(anatomy::figures_of(*preset, *kind), layer);
   }
+  if (*preset == anatomy::TissuePreset::kElastography && spec.has_scan_region() &&
+      spec.base().kind() == v1::Support::KIND_UNSPECIFIED) {
+    spec.mutable_base()->set_kind(v1::Support::BY_REGION);
+  }
   return spec;
 }
 

@@ -63,10 +63,10 @@ class Plan:
     Examples
     --------
     >>> plan = Plan("plate").square(60, 60, n_xi=12, n_eta=12)
-    >>> plan.layer("skin", thickness_mm=2, youngs_modulus_kpa=100, poisson_ratio=0.45,
-    density_kg_m3=1100) >>> plan.film("deep", below="skin", n_xi=6, n_eta=6, zones={"middle":
-    box(0.25, 0.75, 0.25, 0.75)}) >>> plan.inject("middle", volume_ml=0.5,
-    rate_ml_per_s=1.0).settle(end_s=20)
+    >>> figures = {"youngs_modulus_kpa": 100, "poisson_ratio": 0.45, "density_kg_m3": 1100}
+    >>> plan.layer("skin", thickness_mm=2, **figures)
+    >>> plan.film("deep", below="skin", zones={"middle": box(0.25, 0.75, 0.25, 0.75)})
+    >>> plan.inject("middle", volume_ml=0.5, rate_ml_per_s=1.0).settle(end_s=20)
     """
 
     def __init__(self, name: str = "", description: str = "", *, folder: PathLike = ".") -> None:
@@ -135,11 +135,19 @@ class Plan:
     def simulation(self) -> simulation_pb2.SimulationSpec:
         return self.message.simulation
 
-    def square(self, length_xi_mm: float, length_eta_mm: float, *, n_xi: int, n_eta: int) -> Plan:
-        """A flat plate, in n_xi x n_eta hexahedra."""
+    def square(
+        self, length_xi_mm: float, length_eta_mm: float, *, n_xi: Optional[int] = None, n_eta: Optional[int] = None
+    ) -> Plan:
+        """A flat plate, in n_xi x n_eta hexahedra; the daemon chooses what is left out."""
         self.model.square.length_xi_mm, self.model.square.length_eta_mm = length_xi_mm, length_eta_mm
-        self.model.n_xi, self.model.n_eta = n_xi, n_eta
+        self._divide(n_xi, n_eta)
         return self
+
+    def _divide(self, n_xi: Optional[int], n_eta: Optional[int]) -> None:
+        for field, count in (("n_xi", n_xi), ("n_eta", n_eta)):
+            self.model.ClearField(field)
+            if count is not None:
+                setattr(self.model, field, count)
 
     def face(
         self,
@@ -147,14 +155,14 @@ class Plan:
         *,
         corners: Sequence[geometry_pb2.SkinPoint] = (),
         around: Sequence[str] = (),
-        n_xi: int,
-        n_eta: int,
+        n_xi: Optional[int] = None,
+        n_eta: Optional[int] = None,
         landmarks: Optional[PathLike] = None,
         unit: str = "mm",
     ) -> Plan:
         """A region of a scan, in n_xi x n_eta hexahedra: around named regions of the face, or
         between four corners, anticlockwise seen from outside. With neither it follows from the
-        zones of the films.
+        zones of the films. The daemon chooses the numbers that are left out.
         """
         self.message.scan.file, self.message.scan.unit = os.fspath(scan), unit_of(unit)
         if landmarks is not None:
@@ -165,7 +173,7 @@ class Plan:
         if around:
             self.model.scan_region.around.regions.extend(around)
         self.model.scan_region.SetInParent()
-        self.model.n_xi, self.model.n_eta = n_xi, n_eta
+        self._divide(n_xi, n_eta)
         return self
 
     def layer(
@@ -203,16 +211,20 @@ class Plan:
         name: str,
         *,
         below: str,
-        n_xi: int,
-        n_eta: int,
         zones: Mapping[str, Shape],
+        n_xi: Optional[int] = None,
+        n_eta: Optional[int] = None,
         extent: Optional[geometry_pb2.ChartBox] = None,
         rest_thickness_mm: Optional[Field] = None,
+        edge: Optional[simulation_pb2.ZoneEdge] = None,
     ) -> Plan:
         """A film of fat under the layer `below`. A zone is a box, a disc or samples (painted), or a
-        region's name.
+        region's name. Cells that are not counted are two hexahedra wide; an edge that is left out
+        is held by septa with assumed figures on a face, and rigid on a square.
         """
-        film = self.simulation.films.add(name=name, below_layer=below, n_xi=n_xi, n_eta=n_eta, extent=extent)
+        film = self.simulation.films.add(
+            name=name, below_layer=below, n_xi=n_xi, n_eta=n_eta, extent=extent, edge=edge
+        )
         if rest_thickness_mm is not None:
             film.rest_thickness_mm.CopyFrom(_field(rest_thickness_mm))
         for zone, shape in zones.items():

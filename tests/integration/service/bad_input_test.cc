@@ -129,7 +129,7 @@ TEST_F(BadInputTest, Models) {
   spec = good;
   spec.GetReflection()->MutableUnknownFields(&spec)->AddVarint(77, 1);
   expect_refused_model(spec, "lipofill.v1.ModelSpec");
-  expect_refused_model(v1::ModelSpec(), "n_xi");
+  expect_refused_model(v1::ModelSpec(), "square");
 }
 
 TEST_F(BadInputTest, Simulations) {

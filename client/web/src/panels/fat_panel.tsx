@@ -33,8 +33,6 @@ function Planes() {
                   simulation!.films.map(({ name }) => name),
                 ),
                 layer,
-                model!.nXi ?? 40,
-                model!.nEta ?? 32,
               ),
             );
           })

@@ -9,6 +9,7 @@ import { editPlan, model, modelIsCurrent, plan, region, scan } from "../plan/sta
 import { busy } from "../activity";
 import { tool } from "../plan/tools";
 import { CheckField, Complaint, NumberField, Section, Segmented, SelectField } from "../widgets/fields";
+import { BaseFields } from "./base_fields";
 
 const side = signal<Side>("left");
 const chosen = signal("jaw_zones");
@@ -76,20 +77,20 @@ function Surroundings() {
 
 function Corners() {
   return (
-      <div class="row" role="group" aria-label="Correct a corner by clicking">
-        <span class="quiet">Correct corner</span>
-        {[0, 1, 2, 3].map((index) => (
-          <button
-            type="button"
-            class="button small"
-            key={index}
-            aria-pressed={tool.value.kind === "corner" && tool.value.index === index}
-            onClick={() => (tool.value = { kind: "corner", index })}
-          >
-            {index + 1}
-          </button>
-        ))}
-      </div>
+    <div class="row" role="group" aria-label="Correct a corner by clicking">
+      <span class="quiet">Correct corner</span>
+      {[0, 1, 2, 3].map((index) => (
+        <button
+          type="button"
+          class="button small"
+          key={index}
+          aria-pressed={tool.value.kind === "corner" && tool.value.index === index}
+          onClick={() => (tool.value = { kind: "corner", index })}
+        >
+          {index + 1}
+        </button>
+      ))}
+    </div>
   );
 }
 
@@ -211,20 +212,20 @@ function Resolution() {
       field="model.n_xi"
       onChange={(key) => {
         const option = resolutions.find((candidate) => candidate.key === key);
-        if (option) editPlan((next) => setResolution(next, option.nXi, option.nEta));
+        if (option) editPlan((next) => setResolution(next, option));
       }}
     />
   );
 }
 
 function Built() {
-  const report = model.value?.report;
-  if (!report) return null;
+  const { spec, report } = model.value ?? {};
+  if (!spec || !report) return null;
   return (
     <Section title="Model">
       <p class="quiet">
-        {report.hexahedra.toLocaleString("en")} elements, {report.areaCm2.toFixed(0)} cm²,{" "}
-        {report.tissueVolumeMl.toFixed(0)} mL of tissue
+        {spec.nXi} × {spec.nEta} × {spec.layers.reduce((sum, layer) => sum + (layer.elementsThrough ?? 1), 0)} elements,{" "}
+        {report.areaCm2.toFixed(0)} cm², {report.tissueVolumeMl.toFixed(0)} mL of tissue
       </p>
       <CheckField label="See the layers" value={showLayers.value} onChange={(value) => (showLayers.value = value)} />
       {showLayers.value &&
@@ -253,6 +254,11 @@ export function TissuePanel() {
     <>
       {isScan && <Region />}
       <Layers />
+      {isScan && (
+        <Section title="Base">
+          <BaseFields />
+        </Section>
+      )}
       <Section title="Elements">
         <Resolution />
         <button

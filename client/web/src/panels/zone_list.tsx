@@ -8,6 +8,7 @@ import { chart, editPlan, plan, region, zones } from "../plan/state";
 import { skinPointAt, tool } from "../plan/tools";
 import { cssOf, zoneColours } from "../scene/colour_maps";
 import { Complaint, NumberField, SelectField, TextField } from "../widgets/fields";
+import { EdgeFields } from "./edge_fields";
 
 const shapeWord: Record<string, string> = { region: "by landmarks", painted: "painted", disc: "disc", box: "box" };
 
@@ -233,6 +234,7 @@ export function FilmEditor({ film, of, zonesBefore }: { film: number; of: Film; 
           ...choices.map((name) => ({ value: name, label: readable(name) })),
         ]}
       />
+      <EdgeFields film={film} />
       {of.walls.length > 0 && (
         <ul class="items">
           {of.walls.map((wall, index) => (

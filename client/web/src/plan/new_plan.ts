@@ -5,7 +5,16 @@ import { FilmSchema, InjectionSchema, ZoneSchema, type Film, type Injection, typ
 import { Support_Kind, TissueLayer_Kind, TissuePreset } from "@wire/model_pb";
 import { aroundOf } from "./anatomy";
 
-export const resolutions = [
+export interface Resolution {
+  key: string;
+  label: string;
+  /** absent: chosen for the zones when the model is built */
+  nXi?: number;
+  nEta?: number;
+}
+
+export const resolutions: Resolution[] = [
+  { key: "chosen", label: "As the zones need" },
   { key: "coarse", label: "Coarse, quickest", nXi: 24, nEta: 20 },
   { key: "standard", label: "Standard", nXi: 40, nEta: 32 },
   { key: "fine", label: "Fine, four times as long", nXi: 60, nEta: 48 },
@@ -18,8 +27,6 @@ export function newPlan(): Plan {
     name: "plan",
     model: {
       geometry: { case: "scanRegion", value: { around: aroundOf("jaw_zones", "left") } },
-      nXi: 40,
-      nEta: 32,
       tissuePreset: TissuePreset.PAPER,
       layers: [
         { name: "skin", kind: TissueLayer_Kind.SKIN, thicknessMm: constant(1.8) },
@@ -27,25 +34,19 @@ export function newPlan(): Plan {
         { name: "muscle", kind: TissueLayer_Kind.MUSCLE, thicknessMm: constant(8) },
       ],
       rim: { kind: Support_Kind.CLAMPED },
-      base: { kind: Support_Kind.CLAMPED },
     },
     simulation: {
       fat: { viscosityPaS: 15 },
-      films: [newFilm("deep", "subcutaneous", 40, 32)],
+      films: [newFilm("deep", "subcutaneous")],
       time: { stepMs: 10, maxStepMs: 2000, endS: 120, settleSkinSpeedMmPerS: 0.01 },
     },
     output: { intervalMs: 1000 },
   });
 }
 
-export function newFilm(name: string, belowLayer: string, nXi: number, nEta: number): Film {
-  return create(FilmSchema, {
-    name,
-    belowLayer,
-    nXi: Math.floor(nXi / 2),
-    nEta: Math.floor(nEta / 2),
-    restThicknessMm: constant(0.05),
-  });
+/** Its cells are as narrow as the model's elements let them be. */
+export function newFilm(name: string, belowLayer: string): Film {
+  return create(FilmSchema, { name, belowLayer, restThicknessMm: constant(0.05) });
 }
 
 export function newZone(name: string, region: string): Zone {
@@ -62,14 +63,9 @@ export function freeName(wanted: string, taken: string[]): string {
   for (let k = 2; ; ++k) if (!taken.includes(`${wanted}_${k}`)) return `${wanted}_${k}`;
 }
 
-/** Film cells span at least two hexahedra of the tissue. */
-export function setResolution(plan: Plan, nXi: number, nEta: number): void {
+/** The cells of every film follow. */
+export function setResolution(plan: Plan, { nXi, nEta }: Resolution): void {
   if (!plan.model || !plan.simulation) return;
   Object.assign(plan.model, { nXi, nEta });
-  for (const film of plan.simulation.films) {
-    const spanXi = (film.extent?.xiMax ?? 1) - (film.extent?.xiMin ?? 0);
-    const spanEta = (film.extent?.etaMax ?? 1) - (film.extent?.etaMin ?? 0);
-    film.nXi = Math.floor((spanXi * nXi) / 2 + 1e-9);
-    film.nEta = Math.floor((spanEta * nEta) / 2 + 1e-9);
-  }
+  for (const film of plan.simulation.films) Object.assign(film, { nXi: undefined, nEta: undefined });
 }

@@ -36,12 +36,14 @@ function columnsOf(of: DescMessage, above: DescField[], probes: string[]): Colum
   });
 }
 
+type Figure = number | bigint | undefined;
+
 function valueOf(row: SeriesRow, { path, probe }: Column): string {
   const holder = path.slice(0, -1).reduce<Message | undefined>((of, { localName }) => {
     return (of as unknown as Record<string, Message | undefined> | undefined)?.[localName];
   }, row);
-  const value = (holder as unknown as Record<string, unknown> | undefined)?.[path.at(-1)!.localName];
-  const figure = probe === undefined ? value : (value as number[] | undefined)?.[probe];
+  const value = (holder as unknown as Record<string, Figure | Figure[]> | undefined)?.[path.at(-1)!.localName];
+  const figure = Array.isArray(value) ? value[probe ?? 0] : value;
   return figure === undefined ? "" : String(figure);
 }
 

@@ -6,6 +6,7 @@ import { Chart } from "../../src/plan/chart";
 import { locate, parseLandmarks, pointOf, writeLandmarks } from "../../src/plan/landmarks";
 import { freeName, newPlan, setResolution } from "../../src/plan/new_plan";
 import { parsePlan, writePlan } from "../../src/plan/plan_file";
+import { edgeOf } from "../../src/plan/zone_edge";
 import { descriptionFor, toPlanFields } from "../../src/plan/violations";
 
 const examples = new URL("../../../examples/", import.meta.url);
@@ -59,7 +60,9 @@ describe("landmarks", () => {
     const plan = parsePlan(
       JSON.stringify({
         model: { scan_region: {} },
-        simulation: { films: [{ zones: [{ region: "chin_left" }, { region: "malar_left" }, { region: "chin_left" }] }] },
+        simulation: {
+          films: [{ zones: [{ region: "chin_left" }, { region: "malar_left" }, { region: "chin_left" }] }],
+        },
       }),
     );
     takeRegionFromZones(plan);
@@ -90,10 +93,19 @@ describe("the chart", () => {
 });
 
 describe("a new plan", () => {
-  it("keeps film cells two hexahedra wide", () => {
+  it("leaves sizes to the daemon until one is chosen, and film cells then as well", () => {
     const plan = newPlan();
-    setResolution(plan, 41, 31);
-    expect([plan.simulation!.films[0].nXi, plan.simulation!.films[0].nEta]).toEqual([20, 15]);
+    expect(plan.model!.nXi).toBeUndefined();
+    plan.simulation!.films[0].nXi = 7;
+    setResolution(plan, { key: "own", label: "", nXi: 41, nEta: 31 });
+    expect([plan.model!.nXi, plan.model!.nEta]).toEqual([41, 31]);
+    expect(plan.simulation!.films[0].nXi).toBeUndefined();
+  });
+  it("holds the edges of its zones as the user says", () => {
+    expect(edgeOf("region")).toBeUndefined();
+    expect(edgeOf("rigid")?.bond).toEqual({ case: "rigid", value: true });
+    const edge = edgeOf("attachment");
+    expect(edge?.bond.case === "attachment" && edge.bond.value.widthMm).toBe(4);
   });
   it("finds free names", () => {
     expect(freeName("deep", ["deep", "deep_2"])).toBe("deep_3");

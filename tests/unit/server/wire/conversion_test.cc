@@ -39,7 +39,7 @@ TEST(ModelConversion, TurnsUnitsToSi) {
   EXPECT_EQ(spec->n_xi, 8);
   ASSERT_EQ(spec->layers.size(), 1u);
   EXPECT_DOUBLE_EQ(spec->layers[0].geometry.thickness.at(0.5, 0.5), 0.002);
-  EXPECT_EQ(spec->layers[0].geometry.elements_through, 1);
+  EXPECT_EQ(spec->layers[0].geometry.elements_through, 0) << "it follows from the width";
   EXPECT_DOUBLE_EQ(spec->layers[0].material.youngs_modulus, 1e5);
   EXPECT_DOUBLE_EQ(spec->layers[0].material.density, 1100);
   EXPECT_EQ(spec->rim.kind, model::SupportKind::kRollers);
@@ -51,10 +51,36 @@ TEST(ModelConversion, NamesEverythingThatIsMissing) {
   const auto spec =
       to_face_model_spec(parse<v1::ModelSpec>("square { length_xi_mm: 40 } layers { } base { kind: ELASTIC }"));
   EXPECT_THAT(fields_of(spec.status()),
-              UnorderedElementsAre("square.length_eta_mm", "n_xi", "n_eta", "layers[0].name", "layers[0].thickness_mm",
+              UnorderedElementsAre("square.length_eta_mm", "layers[0].name", "layers[0].thickness_mm",
                                    "layers[0].youngs_modulus_kpa", "layers[0].poisson_ratio", "layers[0].density_kg_m3",
                                    "base.stiffness_kpa_per_mm"));
   EXPECT_THAT(fields_of(to_face_model_spec(parse<v1::ModelSpec>("n_xi: 1 n_eta: 1")).status()), ElementsAre("square"));
+}
+
+TEST(ModelConversion, CountsThatAreLeftOutAreChosenAndZeroIsNone) {
+  const auto spec = to_face_model_spec(parse<v1::ModelSpec>("square { length_xi_mm: 40 length_eta_mm: 30 } n_eta: 6"));
+  ASSERT_TRUE(spec.ok()) << spec.status();
+  EXPECT_EQ(spec->n_xi, 0);
+  EXPECT_EQ(spec->n_eta, 6);
+  const auto none =
+      to_face_model_spec(parse<v1::ModelSpec>("square { length_xi_mm: 40 length_eta_mm: 30 } n_xi: 0 n_eta: 6"));
+  EXPECT_THAT(fields_of(none.status()), ElementsAre("n_xi"));
+}
+
+TEST(ModelConversion, TheBaseOfAFaceInElastographyIsByRegionUnlessThePlanSaysOtherwise) {
+  const std::string face = R"(scan_region { scan: "patients/a/scans/s" around { regions: "buccal_left" } } )";
+  const auto kind = [&](const std::string& rest) {
+    const auto spec = to_face_model_spec(parse<v1::ModelSpec>(face + rest));
+    EXPECT_TRUE(spec.ok()) << spec.status();
+    return spec->base.kind;
+  };
+  EXPECT_EQ(kind("tissue_preset: ELASTOGRAPHY"), model::SupportKind::kByRegion);
+  EXPECT_EQ(kind("tissue_preset: ELASTOGRAPHY base { kind: CLAMPED }"), model::SupportKind::kClamped);
+  EXPECT_EQ(kind("tissue_preset: PAPER"), model::SupportKind::kClamped);
+  const auto soft = to_face_model_spec(
+      parse<v1::ModelSpec>(face + "base { kind: BY_REGION stiffness_kpa_per_mm: 0.25 } tissue_preset: PAPER"));
+  ASSERT_TRUE(soft.ok());
+  EXPECT_DOUBLE_EQ(soft->base.stiffness, 0.25e6);
 }
 
 TEST(ModelConversion, ReadsAScanRegion) {
@@ -191,14 +217,13 @@ TEST(SimulationConversion, NamesEverythingThatIsMissing) {
   const auto spec = to_simulation_spec(parse<v1::SimulationSpec>(R"(
     films { zones { } zones { name: "b" disc { } } extent { xi_min: 0 } rest_thickness_mm { } wall { kind: WINKLER } }
     injections { } probes { } gravity_m_s2 { x: 1 })"));
-  EXPECT_THAT(
-      fields_of(spec.status()),
-      UnorderedElementsAre("model", "films[0].name", "films[0].extent.xi_max", "films[0].extent.eta_min",
-                           "films[0].extent.eta_max", "films[0].n_xi", "films[0].n_eta", "films[0].zones[0].name",
-                           "films[0].zones[0].box", "films[0].zones[1].disc.centre", "films[0].zones[1].disc.radius_mm",
-                           "films[0].rest_thickness_mm", "films[0].wall.stiffness_kpa_per_mm", "injections[0].zone",
-                           "injections[0].volume_ml", "injections[0].rate_ml_per_s", "probes[0].name",
-                           "probes[0].place", "gravity_m_s2.y", "gravity_m_s2.z"));
+  EXPECT_THAT(fields_of(spec.status()),
+              UnorderedElementsAre("model", "films[0].name", "films[0].extent.xi_max", "films[0].extent.eta_min",
+                                   "films[0].extent.eta_max", "films[0].zones[0].name", "films[0].zones[0].box",
+                                   "films[0].zones[1].disc.centre", "films[0].zones[1].disc.radius_mm",
+                                   "films[0].rest_thickness_mm", "films[0].wall.stiffness_kpa_per_mm",
+                                   "injections[0].zone", "injections[0].volume_ml", "injections[0].rate_ml_per_s",
+                                   "probes[0].name", "probes[0].place", "gravity_m_s2.y", "gravity_m_s2.z"));
 }
 
 TEST(InjectionConversion, NamesWhatIsMissing) {

@@ -38,6 +38,23 @@ TEST(ReportConversion, SummariesAreInTheUnitsOfTheirNames) {
   EXPECT_EQ(summary.state_hash(), "hash");
 }
 
+TEST(ReportConversion, AKeptSpecificationHasTheSizesThatWereChosen) {
+  model::FaceModelSpec spec;
+  spec.region = geometry::SquareSpec{0.06, 0.04};
+  spec.layers = {{"skin", {geometry::ScalarField::constant(2e-3), 0}, {1e5, 0.45, 1100.0}},
+                 {"muscle", {geometry::ScalarField::constant(10e-3), 0}, {2e5, 0.45, 1050.0}}};
+  const auto model = model::build_face_model(spec, nullptr);
+  ASSERT_TRUE(model.ok()) << model.status();
+  v1::ModelSpec message;
+  message.add_layers()->set_name("skin");
+  message.add_layers()->set_name("muscle");
+  const v1::ModelSpec kept = with_chosen_sizes(message, **model);
+  EXPECT_EQ(kept.n_xi(), 30u);
+  EXPECT_EQ(kept.n_eta(), 20u);
+  EXPECT_EQ(kept.layers(0).elements_through(), 1u);
+  EXPECT_EQ(kept.layers(1).elements_through(), 3u);
+}
+
 TEST(ReportConversion, ThePreviewIsToldWhereThereIsOne) {
   EXPECT_FALSE(to_summary(view()).has_preview());
   SessionView previewed = view();

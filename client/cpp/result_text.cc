@@ -21,6 +21,14 @@ std::string preview_state_name(const v1::PreviewSummary& preview) {
   return v1::PreviewSummary::State_Name(preview.state());
 }
 
+std::string discretisation_text(const v1::DiscretisationError& error) {
+  if (!error.reason().empty()) return absl::StrCat("  grid error   not known: ", error.reason(), "\n");
+  if (!error.has_lift_share()) return "";
+  return absl::StrFormat(
+      "  grid error   lift %.1f %%, pressures %.1f %%, skin %.3f mm at 95 of 100 places (estimates)\n",
+      100.0 * error.lift_share(), 100.0 * error.pressure_share(), error.skin_mm());
+}
+
 }  // namespace
 
 std::string preview_text(const v1::PreviewSummary& preview) {
@@ -69,6 +77,7 @@ std::string summary_text(const std::string& plan, const v1::Simulation& simulati
     absl::StrAppendFormat(&text, "               %.3f mm still to go, judged by how its speed falls\n",
                           s.settling_error_mm());
   }
+  absl::StrAppend(&text, discretisation_text(s.discretisation_error()));
   if (s.undelivered_ml() < 0.0) {
     absl::StrAppendFormat(&text, "  taken out    %.3f mL less than planned: there was no more\n", -s.undelivered_ml());
   }

@@ -20,8 +20,8 @@ inline constexpr double kSoftBaseStiffness = 1e6;
 ///
 /// over the regions that span from bone to bone: buccal, between cheekbone, upper jaw and mandible,
 /// and submaxillary, below the mandible. Everywhere else there is bone (zygoma, maxilla, mandible,
-/// temporal bone) or teeth. The width of the blend is assumed. Regions of every side whose landmarks
-/// are there take part; nothing when no side has them. Checked by
+/// temporal bone) or teeth. The width of the blend is assumed. Regions of every side whose
+/// landmarks are there take part; nothing when no side has them. Checked by
 /// tests/unit/anatomy/base_give_test.cc.
 std::optional<Eigen::VectorXd> compute_base_give(const geometry::FaceGeometry& face);
 

@@ -166,11 +166,8 @@ geometry::SkinPoint fix_in_chart(const model::FaceModel& fine, const geometry::S
   return place.ok() ? geometry::SkinPoint(*place) : point;
 }
 
-}  // namespace
-
-std::shared_ptr<const model::FaceModel> coarsen_model(const model::FaceModel& model) {
+std::shared_ptr<const model::FaceModel> coarsen_by(const model::FaceModel& model, double factor) {
   const LayeredGrid& grid = model.geometry.grid;
-  const double factor = std::max(kPreviewCoarsening, std::sqrt(grid.n_hexahedra() / double{kMostPreviewHexahedra}));
   auto coarse = std::make_shared<model::FaceModel>();
   coarse->geometry.grid = resample(grid, coarsen_count(grid.n_xi, factor), coarsen_count(grid.n_eta, factor));
   coarse->geometry.axes = model.geometry.axes;
@@ -188,6 +185,17 @@ std::shared_ptr<const model::FaceModel> coarsen_model(const model::FaceModel& mo
   for (const int n : {coarse->geometry.grid.n_xi, coarse->geometry.grid.n_eta}) hasher.add(n);
   coarse->content_hash = hasher.hex_digest();
   return coarse;
+}
+
+}  // namespace
+
+std::shared_ptr<const model::FaceModel> coarsen_model(const model::FaceModel& model) {
+  const double hexahedra = model.geometry.grid.n_hexahedra();
+  return coarsen_by(model, std::max(kPreviewCoarsening, std::sqrt(hexahedra / kMostPreviewHexahedra)));
+}
+
+std::shared_ptr<const model::FaceModel> halve_model(const model::FaceModel& model) {
+  return coarsen_by(model, kPreviewCoarsening);
 }
 
 SimulationSpec coarsen_plan(const SimulationSpec& spec, const model::FaceModel& fine, const model::FaceModel& coarse) {

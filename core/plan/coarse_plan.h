@@ -18,6 +18,9 @@ namespace lipofill::plan {
 /// tests/unit/plan/coarse_plan_test.cc.
 std::shared_ptr<const model::FaceModel> coarsen_model(const model::FaceModel& model);
 
+/// The same by 2 however many hexahedra that leaves, to compare the two results.
+std::shared_ptr<const model::FaceModel> halve_model(const model::FaceModel& model);
+
 inline constexpr double kPreviewCoarsening = 2.0;
 inline constexpr int kMostPreviewHexahedra = 1200;
 inline constexpr int kLeastPreviewDivisions = 8;

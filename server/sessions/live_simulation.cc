@@ -171,6 +171,9 @@ void LiveSimulation::conclude() {
   const SimulationState state = figures_.latest().state;
   preview_.judge(*simulation_, state == SimulationState::kSettled || state == SimulationState::kFinished);
   figures_.set_preview(preview_.view());
+  if (state == SimulationState::kSettled) {
+    figures_.set_discretisation(simulation::estimate_discretisation_error(*simulation_));
+  }
   figures_.show(measure());
   take_last_frame();
   if (const absl::Status kept = keep_result(); !kept.ok()) {

@@ -40,6 +40,11 @@ void SessionFigures::set_preview(const std::optional<PreviewView>& preview) {
   view_.preview = preview;
 }
 
+void SessionFigures::set_discretisation(std::optional<absl::StatusOr<simulation::DiscretisationError>> error) {
+  const std::lock_guard lock(mutex_);
+  view_.discretisation = std::move(error);
+}
+
 void SessionFigures::count_step(const mechanics::StepCost& cost, double wall_ms) {
   cost_.add(cost);
   step_ms_.push_back(static_cast<float>(wall_ms));

@@ -28,6 +28,7 @@ class SessionFigures {
   void set_state(SimulationState state, std::string reason);
   void set_reason(std::string reason);
   void set_preview(const std::optional<PreviewView>& preview);
+  void set_discretisation(std::optional<absl::StatusOr<simulation::DiscretisationError>> error);
   /// Counts a step that took this long.
   void count_step(const mechanics::StepCost& cost, double wall_ms);
   /// Takes the figures of the present state.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/simulation/discretisation.h"
 #include "core/simulation/preview.h"
 #include "core/simulation/simulation.h"
 #include "server/sessions/frame.h"
@@ -55,6 +56,8 @@ struct SessionView {
   std::string state_hash;       ///< empty in a cached view of a live simulation
   size_t queue_position = 0;    ///< while it waits to run: 1 is the next
   std::optional<PreviewView> preview;
+  /// Once it has settled; a status that says why nothing is known.
+  std::optional<absl::StatusOr<simulation::DiscretisationError>> discretisation;
   int viewers = 0;
 };
 

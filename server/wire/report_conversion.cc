@@ -62,6 +62,18 @@ v1::PreviewSummary to_preview_summary(const PreviewView& view) {
   return summary;
 }
 
+void add_discretisation(const absl::StatusOr<simulation::DiscretisationError>& error, v1::Summary& summary) {
+  v1::DiscretisationError& message = *summary.mutable_discretisation_error();
+  if (!error.ok()) {
+    message.set_reason(std::string(error.status().message()));
+    return;
+  }
+  message.set_lift_share(error->lift);
+  message.set_pressure_share(error->pressure);
+  message.set_skin_mm(error->skin * kMillimetresPerMetre);
+  if (const std::string remark = simulation::remark_on(*error); !remark.empty()) summary.add_remarks(remark);
+}
+
 }  // namespace
 
 v1::ModelReport to_model_report(const model::FaceModel& model) {
@@ -180,6 +192,7 @@ v1::Summary to_summary(const SessionView& view) {
     zone->set_max_thickness_mm(report.max_thickness * kMillimetresPerMetre);
   }
   for (const std::string& remark : view.remarks) summary.add_remarks(remark);
+  if (view.discretisation) add_discretisation(*view.discretisation, summary);
   return summary;
 }
 

@@ -1,5 +1,7 @@
 #include "client/cpp/picture/result_picture.h"
 
+#include <string_view>
+
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "client/cpp/picture/colours.h"
@@ -27,9 +29,9 @@ constexpr double kRowsTop = 0.945;
 constexpr double kRowsBottom = 0.045;
 constexpr double kRemarkLine = 0.019;
 constexpr size_t kMostRemarks = 6;
-constexpr size_t kRemarkLength = 175;  // letters that the sheet is wide enough for
-constexpr double kHeading = 0.032;     // of a row, above its panels
-constexpr double kLine = 0.027;        // from a line of text to the next
+constexpr size_t kLineLength = 125;  // letters that fit below the two columns of panels
+constexpr double kHeading = 0.032;   // of a row, above its panels
+constexpr double kLine = 0.027;      // from a line of text to the next
 
 /// The two rows of panels: they leave room for remarks below them.
 struct Rows {
@@ -43,12 +45,21 @@ struct Rows {
   }
 };
 
+/// Adds a remark in lines that fit the sheet, broken between words.
+void add_lines(std::string_view remark, std::vector<std::string>& lines) {
+  while (remark.size() > kLineLength) {
+    const size_t space = remark.rfind(' ', kLineLength);
+    const size_t end = space == std::string_view::npos || space == 0 ? kLineLength : space;
+    lines.emplace_back(remark.substr(0, end));
+    remark.remove_prefix(end + (end == space ? 1 : 0));
+  }
+  lines.emplace_back(remark);
+}
+
 /// The remarks as lines that fit the sheet.
 std::vector<std::string> lines_of(const std::vector<std::string>& remarks) {
   std::vector<std::string> lines;
-  for (size_t k = 0; k < remarks.size() && k < kMostRemarks; ++k) {
-    lines.push_back(remarks[k].size() <= kRemarkLength ? remarks[k] : remarks[k].substr(0, kRemarkLength) + " ...");
-  }
+  for (size_t k = 0; k < remarks.size() && k < kMostRemarks; ++k) add_lines(remarks[k], lines);
   if (remarks.size() > kMostRemarks) lines.push_back(absl::StrCat("and ", remarks.size() - kMostRemarks, " more"));
   return lines;
 }

@@ -55,6 +55,25 @@ TEST(ReportConversion, AKeptSpecificationHasTheSizesThatWereChosen) {
   EXPECT_EQ(kept.layers(1).elements_through(), 3u);
 }
 
+TEST(ReportConversion, TheErrorOfTheGridIsToldOrWhyItIsNotKnown) {
+  EXPECT_FALSE(to_summary(view()).has_discretisation_error());
+  SessionView settled = view();
+  settled.discretisation = simulation::DiscretisationError{0.004, 0.012, 0.02e-3};
+  v1::Summary summary = to_summary(settled);
+  EXPECT_DOUBLE_EQ(summary.discretisation_error().lift_share(), 0.004);
+  EXPECT_DOUBLE_EQ(summary.discretisation_error().pressure_share(), 0.012);
+  EXPECT_DOUBLE_EQ(summary.discretisation_error().skin_mm(), 0.02);
+  EXPECT_EQ(summary.remarks_size(), 0);
+  settled.discretisation = simulation::DiscretisationError{0.01, 0.06, 0.1e-3};
+  summary = to_summary(settled);
+  ASSERT_EQ(summary.remarks_size(), 1);
+  EXPECT_NE(summary.remarks(0).find("a zone's pressure by 6 %"), std::string::npos) << summary.remarks(0);
+  settled.discretisation = absl::FailedPreconditionError("the grid has too few divisions to be halved");
+  summary = to_summary(settled);
+  EXPECT_EQ(summary.discretisation_error().reason(), "the grid has too few divisions to be halved");
+  EXPECT_FALSE(summary.discretisation_error().has_lift_share());
+}
+
 TEST(ReportConversion, ThePreviewIsToldWhereThereIsOne) {
   EXPECT_FALSE(to_summary(view()).has_preview());
   SessionView previewed = view();

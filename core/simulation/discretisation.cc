@@ -1,0 +1,111 @@
+#include "core/simulation/discretisation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/base/units.h"
+#include "core/plan/coarse_plan.h"
+
+namespace lipofill::simulation {
+namespace {
+
+constexpr double kOrder = 1.5;
+/// Widths nearer to each other than this tell nothing.
+constexpr double kLeastRatio = 1.4;
+constexpr uint64_t kMostSteps = 400;
+constexpr double kToldShareOfSkin = 0.95;
+
+absl::Status unknown(std::string why) {
+  return absl::FailedPreconditionError(std::move(why));
+}
+
+double ratio_of_widths(const geometry::LayeredGrid& fine, const geometry::LayeredGrid& coarse) {
+  return std::sqrt(static_cast<double>(fine.n_xi) * fine.n_eta / (static_cast<double>(coarse.n_xi) * coarse.n_eta));
+}
+
+/// The plan on the coarse model, at rest.
+absl::StatusOr<std::unique_ptr<Simulation>> settle(const Simulation& fine,
+                                                   std::shared_ptr<const model::FaceModel> model) {
+  plan::SimulationSpec plan = plan::coarsen_plan(fine.spec(), fine.model(), *model);
+  plan.error_tolerance = fine.spec().error_tolerance;
+  auto coarse = Simulation::create(std::move(model), std::move(plan));
+  if (!coarse.ok())
+    return unknown(absl::StrCat("a grid half as fine cannot hold the plan: ", coarse.status().message()));
+  while ((*coarse)->phase() == Phase::kRunning && (*coarse)->report().step < kMostSteps) (*coarse)->advance_step();
+  if ((*coarse)->phase() == Phase::kSettled) return coarse;
+  return unknown(absl::StrCat("on a grid half as fine the plan does not come to rest in ", kMostSteps, " steps"));
+}
+
+/// Displacement of the skin in a frame [mm] (3 n).
+std::vector<float> skin_displacement(const std::vector<FrameField>& fields) {
+  for (const FrameField& field : fields) {
+    if (field.mesh == "skin" && field.name == "displacement") return field.values;
+  }
+  return {};
+}
+
+/// The distance between two displacements that `share` of the nodes do not exceed [m].
+double distance_of_share(const std::vector<float>& a, const std::vector<float>& b, double share) {
+  std::vector<double> squares;
+  for (size_t k = 0; k + 2 < std::min(a.size(), b.size()); k += 3) {
+    double square = 0.0;
+    for (size_t c = k; c < k + 3; ++c) square += std::pow(static_cast<double>(a[c]) - b[c], 2);
+    squares.push_back(square);
+  }
+  if (squares.empty()) return 0.0;
+  const auto at = squares.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(squares.size() - 1));
+  std::nth_element(squares.begin(), at, squares.end());
+  return std::sqrt(*at) * kMetresPerMillimetre;
+}
+
+/// |a - b| as a share of a; 0 where a is 0.
+double relative_difference(double a, double b) {
+  return a == 0.0 ? 0.0 : std::abs((a - b) / a);
+}
+
+double largest_pressure_difference(const Simulation& fine, const Simulation& coarse) {
+  const std::vector<ZoneReport> of_fine = fine.zone_reports();
+  const std::vector<ZoneReport> of_coarse = coarse.zone_reports();
+  double largest = 0.0;
+  for (size_t z = 0; z < std::min(of_fine.size(), of_coarse.size()); ++z) {
+    largest = std::max(largest, relative_difference(of_fine[z].mean_pressure, of_coarse[z].mean_pressure));
+  }
+  return largest;
+}
+
+}  // namespace
+
+absl::StatusOr<DiscretisationError> estimate_discretisation_error(const Simulation& settled) {
+  if (settled.phase() != Phase::kSettled) return unknown("the simulation has not settled");
+  if (settled.model().layers.empty()) return unknown("the model has no tissue");
+  const std::shared_ptr<const model::FaceModel> coarse_model = plan::halve_model(settled.model());
+  const double ratio = ratio_of_widths(settled.model().geometry.grid, coarse_model->geometry.grid);
+  if (ratio < kLeastRatio) return unknown("the grid has too few divisions to be halved");
+  const auto coarse = settle(settled, coarse_model);
+  if (!coarse.ok()) return coarse.status();
+  const double extrapolated = 1.0 / (std::pow(ratio, kOrder) - 1.0);
+  DiscretisationError error;
+  error.lift = extrapolated *
+               relative_difference(settled.report().skin_max_displacement, (*coarse)->report().skin_max_displacement);
+  error.pressure = extrapolated * largest_pressure_difference(settled, **coarse);
+  error.skin = extrapolated * distance_of_share(skin_displacement(settled.frame({"skin"})),
+                                                skin_displacement((*coarse)->frame_on(settled.model().geometry)),
+                                                kToldShareOfSkin);
+  return error;
+}
+
+std::string remark_on(const DiscretisationError& error) {
+  if (std::max(error.lift, error.pressure) < kLargeDiscretisationError) return "";
+  return absl::StrFormat(
+      "The grid is coarse for this plan: the lift is off by an estimated %.0f %%, a zone's pressure by %.0f %%, the "
+      "skin "
+      "by %.2f mm at 95 of 100 places; raise n_xi and n_eta of the model, or leave them out.",
+      100.0 * error.lift, 100.0 * error.pressure, error.skin * kMillimetresPerMetre);
+}
+
+}  // namespace lipofill::simulation

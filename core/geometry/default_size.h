@@ -7,13 +7,14 @@
 
 namespace lipofill::geometry {
 
-/// Quadrilaterals of the skin are this wide where nothing says otherwise [m]: on `jaw_angle` half
-/// the width changes lift and pressures by 1 %.
-inline constexpr double kDefaultWidth = 2e-3;
+/// Quadrilaterals of the skin are this wide where nothing says otherwise [m]: a third of the width
+/// of a firm septum, which they have to resolve. On `jaw_contour` lift and pressure are then off by
+/// some 1 and 3 %.
+inline constexpr double kDefaultWidth = 4e-3 / 3.0;
 /// Zones narrower than four quadrilaterals in their half width get narrower ones, down to this [m].
 inline constexpr double kNarrowestDefaultWidth = 1e-3;
 /// A default grid has at most so many quadrilaterals: a larger region gets wider ones.
-inline constexpr int kMostDefaultQuadrilaterals = 2500;
+inline constexpr int kMostDefaultQuadrilaterals = 3500;
 
 /// Divisions of a chart along xi and eta.
 struct GridSize {

@@ -104,7 +104,7 @@ std::string remark_on(const DiscretisationError& error) {
   return absl::StrFormat(
       "The grid is coarse for this plan: the lift is off by an estimated %.0f %%, a zone's pressure by %.0f %%, the "
       "skin "
-      "by %.2f mm at 95 of 100 places; raise n_xi and n_eta of the model, or leave them out.",
+      "by %.2f mm at 95 of 100 places; raise n_xi and n_eta of the model.",
       100.0 * error.lift, 100.0 * error.pressure, error.skin * kMillimetresPerMetre);
 }
 

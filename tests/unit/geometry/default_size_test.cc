@@ -19,14 +19,14 @@ Footprint make_footprint(double half_length, double half_width) {
   return footprint;
 }
 
-TEST(DefaultSize, QuadrilateralsAreTwoMillimetresWideAndTheirNumberIsEven) {
-  const GridSize size = choose_grid_size({0.083, 0.061}, {});
-  EXPECT_EQ(size.n_xi, 42);
-  EXPECT_EQ(size.n_eta, 30);
+TEST(DefaultSize, QuadrilateralsAreAThirdOfASeptumWideAndTheirNumberIsEven) {
+  const GridSize size = choose_grid_size({0.083, 0.051}, {});
+  EXPECT_EQ(size.n_xi, 62);
+  EXPECT_EQ(size.n_eta, 38);
 }
 
 TEST(DefaultSize, NarrowZonesGetNarrowerOnes) {
-  EXPECT_EQ(choose_grid_size({0.04, 0.03}, {make_footprint(11e-3, 6e-3), make_footprint(20e-3, 20e-3)}).n_xi, 26);
+  EXPECT_EQ(choose_grid_size({0.04, 0.03}, {make_footprint(11e-3, 5e-3), make_footprint(20e-3, 20e-3)}).n_xi, 32);
   EXPECT_EQ(choose_grid_size({0.04, 0.03}, {make_footprint(11e-3, 2e-3)}).n_xi, 40) << "1 mm at least";
 }
 
@@ -51,8 +51,8 @@ TEST(DefaultSize, WhatIsLeftOutIsChosenAndWhatIsGivenStays) {
   const auto face = build_face_geometry(spec, nullptr);
   ASSERT_TRUE(face.ok()) << face.status();
   EXPECT_EQ(face->grid.n_xi, 15);
-  EXPECT_EQ(face->grid.n_eta, 20);
-  EXPECT_EQ(face->grid.elements_through, (std::vector<int>{1, 3, 1})) << "the mean width is 3 mm";
+  EXPECT_EQ(face->grid.n_eta, 30);
+  EXPECT_EQ(face->grid.elements_through, (std::vector<int>{1, 3, 1})) << "the mean width is 2.7 mm";
 }
 
 }  // namespace

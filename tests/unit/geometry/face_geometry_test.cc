@@ -115,7 +115,7 @@ TEST(FaceGeometry, RefusesNumbersOutOfBounds) {
   expect_violation(broken([](auto& s) { s.layers[0].thickness = ScalarField::constant(std::nan("")); }),
                    "layers[0].thickness_mm", "finite");
   expect_violation(broken([](auto& s) { s.layers[0].thickness.n_xi = 3; }), "layers[0].thickness_mm", "values");
-  expect_violation(broken([](auto& s) { s.layers[0].elements_through = 0; }), "layers[0].elements_through", "[1, 16]");
+  expect_violation(broken([](auto& s) { s.layers[0].elements_through = -1; }), "layers[0].elements_through", "[1, 16]");
   expect_violation(broken([](auto& s) { s.layers[0].elements_through = 17; }), "layers[0].elements_through", "17");
   expect_violation(broken([](auto& s) { s.layers.resize(9, s.layers[0]); }), "layers", "at most 8");
   expect_violation(broken([](auto& s) { s.region = SquareSpec{0.0001, 0.1}; }), "square.length_xi_mm", "[1, 1000]");

@@ -14,7 +14,7 @@ export interface Resolution {
 }
 
 export const resolutions: Resolution[] = [
-  { key: "chosen", label: "As the zones need" },
+  { key: "chosen", label: "As the zones need, the slowest" },
   { key: "coarse", label: "Coarse, quickest", nXi: 24, nEta: 20 },
   { key: "standard", label: "Standard", nXi: 40, nEta: 32 },
   { key: "fine", label: "Fine, four times as long", nXi: 60, nEta: 48 },
@@ -27,6 +27,8 @@ export function newPlan(): Plan {
     name: "plan",
     model: {
       geometry: { case: "scanRegion", value: { around: aroundOf("jaw_zones", "left") } },
+      nXi: 40,
+      nEta: 32,
       tissuePreset: TissuePreset.PAPER,
       layers: [
         { name: "skin", kind: TissueLayer_Kind.SKIN, thicknessMm: constant(1.8) },

@@ -93,13 +93,14 @@ describe("the chart", () => {
 });
 
 describe("a new plan", () => {
-  it("leaves sizes to the daemon until one is chosen, and film cells then as well", () => {
+  it("leaves the cells of films to the daemon, and all sizes where they follow from the zones", () => {
     const plan = newPlan();
-    expect(plan.model!.nXi).toBeUndefined();
     plan.simulation!.films[0].nXi = 7;
     setResolution(plan, { key: "own", label: "", nXi: 41, nEta: 31 });
     expect([plan.model!.nXi, plan.model!.nEta]).toEqual([41, 31]);
     expect(plan.simulation!.films[0].nXi).toBeUndefined();
+    setResolution(plan, { key: "chosen", label: "" });
+    expect(plan.model!.nXi).toBeUndefined();
   });
   it("holds the edges of its zones as the user says", () => {
     expect(edgeOf("region")).toBeUndefined();

@@ -49,10 +49,10 @@ TEST(ReportConversion, AKeptSpecificationHasTheSizesThatWereChosen) {
   message.add_layers()->set_name("skin");
   message.add_layers()->set_name("muscle");
   const v1::ModelSpec kept = with_chosen_sizes(message, **model);
-  EXPECT_EQ(kept.n_xi(), 30u);
-  EXPECT_EQ(kept.n_eta(), 20u);
+  EXPECT_EQ(kept.n_xi(), 46u);
+  EXPECT_EQ(kept.n_eta(), 30u);
   EXPECT_EQ(kept.layers(0).elements_through(), 1u);
-  EXPECT_EQ(kept.layers(1).elements_through(), 3u);
+  EXPECT_EQ(kept.layers(1).elements_through(), 4u);
 }
 
 TEST(ReportConversion, TheErrorOfTheGridIsToldOrWhyItIsNotKnown) {

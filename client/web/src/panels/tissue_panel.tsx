@@ -224,7 +224,7 @@ function Built() {
   return (
     <Section title="Model">
       <p class="quiet">
-        {spec.nXi} × {spec.nEta} × {spec.layers.reduce((sum, layer) => sum + (layer.elementsThrough ?? 1), 0)} elements,{" "}
+        {report.hexahedra.toLocaleString("en")} elements, {spec.nXi} × {spec.nEta} in the skin,{" "}
         {report.areaCm2.toFixed(0)} cm², {report.tissueVolumeMl.toFixed(0)} mL of tissue
       </p>
       <CheckField label="See the layers" value={showLayers.value} onChange={(value) => (showLayers.value = value)} />

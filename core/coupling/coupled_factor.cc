@@ -66,4 +66,12 @@ void CoupledFactor::solve_displacement(const Eigen::VectorXd& pressure, Eigen::V
   dx += of_force_;
 }
 
+void CoupledFactor::solve(const Eigen::VectorXd& r, Eigen::VectorXd& x) {
+  nothing_.setZero(analysis_->n_cells());
+  with_factor([&](auto& factor) {
+    factor.solve_forward(r, ignored_);
+    factor.solve_backward(nothing_, x);
+  });
+}
+
 }  // namespace lipofill::coupling

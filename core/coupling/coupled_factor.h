@@ -47,6 +47,9 @@ class CoupledFactor {
   /// dx = S^-1 (r + B^T p) with the r of the last solve_gap_response.
   void solve_displacement(const Eigen::VectorXd& pressure, Eigen::VectorXd& dx);
 
+  /// x = S^-1 r, a solve of its own: no gap, no pressure.
+  void solve(const Eigen::VectorXd& r, Eigen::VectorXd& x);
+
  private:
   template <typename Visit>
   void with_factor(Visit visit);
@@ -59,6 +62,7 @@ class CoupledFactor {
   Eigen::MatrixXd compliance_;
   Eigen::VectorXd lumped_;
   Eigen::VectorXd nothing_;   ///< no pressures
+  Eigen::VectorXd ignored_;   ///< the gap's response where nobody asks for it
   Eigen::VectorXd of_force_;  ///< S^-1 r of the implicit route
   Eigen::VectorXd right_side_;
   Eigen::VectorXd solution_;

@@ -52,7 +52,8 @@ absl::StatusOr<std::unique_ptr<CoupledStep>> CoupledStep::create(const model::Fa
     step->forces_ = std::make_unique<ResidualForce>(*step->system_, spec.gravity);
   }
   coupling::CoupledFactor* factor = step->factor_ ? &step->factor_->factor() : nullptr;
-  step->geometry_ = std::make_unique<FilmGeometry>(model.geometry.grid, films, step->cells_, step->system_.get());
+  step->geometry_ =
+      std::make_unique<mechanics::FilmGeometry>(model.geometry.grid, films, step->cells_, step->system_.get());
   step->films_ = std::make_unique<FilmStep>(films, step->cells_, *step->geometry_, spec, factor, step->cost_);
   return step;
 }

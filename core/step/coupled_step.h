@@ -73,8 +73,8 @@ class CoupledStep {
   /// The tissue as it was set up; null for a model without layers.
   const mechanics::TissueSetup* tissue() const { return system_ ? &system_->setup() : nullptr; }
   /// The mid-surfaces of the films.
-  FilmGeometry& geometry() { return *geometry_; }
-  const FilmGeometry& geometry() const { return *geometry_; }
+  mechanics::FilmGeometry& geometry() { return *geometry_; }
+  const mechanics::FilmGeometry& geometry() const { return *geometry_; }
   /// The cost of the steps since reset_cost.
   const mechanics::StepCost& cost() const { return cost_; }
   void reset_cost() { cost_ = {}; }
@@ -103,7 +103,7 @@ class CoupledStep {
   std::unique_ptr<mechanics::TissueSystem> system_;  ///< null without tissue, as factor_ and forces_
   std::unique_ptr<mechanics::HeldFactor> factor_;
   std::unique_ptr<ResidualForce> forces_;
-  std::unique_ptr<FilmGeometry> geometry_;
+  std::unique_ptr<mechanics::FilmGeometry> geometry_;
   std::unique_ptr<FilmStep> films_;
   Predictor predictor_;
   coupling::FilmSolution solution_;  ///< of the iteration under way

@@ -42,7 +42,7 @@ film::Fat make_fat(const plan::SimulationSpec& spec) {
 }
 
 FilmStep::FilmStep(const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
-                   FilmGeometry& geometry, const plan::SimulationSpec& spec, coupling::CoupledFactor* factor,
+                   mechanics::FilmGeometry& geometry, const plan::SimulationSpec& spec, coupling::CoupledFactor* factor,
                    mechanics::StepCost& cost)
     : films_(films),
       cells_(cells),

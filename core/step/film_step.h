@@ -7,9 +7,9 @@
 
 #include "core/coupling/film_solve.h"
 #include "core/film/film_projection.h"
+#include "core/mechanics/film_geometry.h"
 #include "core/mechanics/step_cost.h"
 #include "core/plan/simulation_spec.h"
-#include "core/step/film_geometry.h"
 #include "core/step/film_motion.h"
 #include "core/step/lagged_mobility.h"
 #include "core/step/wall_response.h"
@@ -26,8 +26,9 @@ class FilmStep {
  public:
   /// @param factor  of the tissue, null without any
   /// @param cost    takes times and iterations; what is passed here outlives the step
-  FilmStep(const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells, FilmGeometry& geometry,
-           const plan::SimulationSpec& spec, coupling::CoupledFactor* factor, mechanics::StepCost& cost);
+  FilmStep(const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
+           mechanics::FilmGeometry& geometry, const plan::SimulationSpec& spec, coupling::CoupledFactor* factor,
+           mechanics::StepCost& cost);
 
   /// Sets the states of films at rest thickness into `state`.
   void set_rest(mechanics::SimulationState& state) const;
@@ -63,7 +64,7 @@ class FilmStep {
 
   const std::vector<plan::FilmLayout>& films_;
   const mechanics::FilmCells& cells_;
-  FilmGeometry& geometry_;
+  mechanics::FilmGeometry& geometry_;
   mechanics::StepCost& cost_;
   Eigen::Vector3d gravity_;
   film::Fat fat_;

@@ -13,7 +13,7 @@ namespace lipofill::step {
 struct Opening {
   const std::vector<plan::FilmLayout>& films;
   const mechanics::FilmCells& cells;
-  const FilmGeometry& geometry;
+  const mechanics::FilmGeometry& geometry;
   const Eigen::VectorXd& rest_volume;  ///< [m3] (n cells)
   mechanics::TissueSystem* system;     ///< null without tissue, as the two below
   mechanics::HeldFactor* factor;

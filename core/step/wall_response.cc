@@ -14,16 +14,14 @@ constexpr double kLeastOwnShare = 1e-3;
 }  // namespace
 
 WallResponse::WallResponse(const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
-                           const FilmGeometry& geometry, plan::CouplingMode coupling, coupling::CoupledFactor* factor)
-    : films_(films), cells_(cells), geometry_(geometry), coupling_(coupling), factor_(factor), rest_volume_(cells.n()) {
-  for (size_t f = 0; f < films.size(); ++f) {
-    for (int cell = 0; cell < cells.n_of(f); ++cell) {
-      const geometry::ChartPoint centre = films[f].cell_centre(cell);
-      rest_volume_[cells.offset[f] + cell] =
-          geometry.rest_area(f)[cell] * films[f].rest_thickness.at(centre.xi, centre.eta);
-    }
-  }
-}
+                           const mechanics::FilmGeometry& geometry, plan::CouplingMode coupling,
+                           coupling::CoupledFactor* factor)
+    : films_(films),
+      cells_(cells),
+      geometry_(geometry),
+      coupling_(coupling),
+      factor_(factor),
+      rest_volume_(geometry.rest_volume()) {}
 
 void WallResponse::update() {
   walls_.diagonal.setZero(cells_.n());

@@ -6,7 +6,7 @@
 #include "core/coupling/film_solve.h"
 #include "core/coupling/wall_compliance.h"
 #include "core/mechanics/film_cells.h"
-#include "core/step/film_geometry.h"
+#include "core/mechanics/film_geometry.h"
 
 namespace lipofill::step {
 
@@ -17,7 +17,7 @@ class WallResponse {
  public:
   /// @param factor  null without tissue; what is passed here outlives the response
   WallResponse(const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
-               const FilmGeometry& geometry, plan::CouplingMode coupling, coupling::CoupledFactor* factor);
+               const mechanics::FilmGeometry& geometry, plan::CouplingMode coupling, coupling::CoupledFactor* factor);
 
   /// Brings the compliance to what the factor holds.
   void update();
@@ -38,7 +38,7 @@ class WallResponse {
 
   const std::vector<plan::FilmLayout>& films_;
   const mechanics::FilmCells& cells_;
-  const FilmGeometry& geometry_;
+  const mechanics::FilmGeometry& geometry_;
   plan::CouplingMode coupling_;
   coupling::CoupledFactor* factor_;
   Eigen::VectorXd rest_volume_;

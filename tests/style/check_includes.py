@@ -4,7 +4,7 @@
     tests/style/check_includes.py ROOT
 
     core/base <- geometry <- {solid, film, anatomy} <- coupling <- model <- plan <- mechanics
-    <- step <- simulation <- export
+    <- {step, equilibrium} <- simulation <- export
 
 Then come server on core and proto, and client on proto alone; core sees neither gRPC nor Protobuf.
 
@@ -38,7 +38,9 @@ ALLOWED = {
     "core/plan": BELOW_MODEL | {"core/model", "core/plan"},
     "core/mechanics": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics"},
     "core/step": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics", "core/step"},
-    "core/simulation": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics", "core/step", "core/simulation"},
+    "core/equilibrium": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics", "core/equilibrium"},
+    "core/simulation": BELOW_MODEL
+    | {"core/model", "core/plan", "core/mechanics", "core/step", "core/equilibrium", "core/simulation"},
     "core/export": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics", "core/simulation", "core/export"},
     "server/store": {"core/base", "server/store"},
     "server/security": {"core/base", "server/store", "server/security"},

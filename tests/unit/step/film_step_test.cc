@@ -21,7 +21,7 @@ struct WinklerCase {
   }()};
   mechanics::FilmCells cells = mechanics::number_cells(films);
   mechanics::StepCost cost;
-  FilmGeometry geometry{model->geometry.grid, films, cells, nullptr};
+  mechanics::FilmGeometry geometry{model->geometry.grid, films, cells, nullptr};
   FilmStep step{films, cells, geometry, spec, nullptr, cost};
 };
 

@@ -19,7 +19,7 @@ constexpr double kLeastOwnShare = 1e-3;    ///< of its own compliance that a lum
 struct Case : SmallSystem {
   std::vector<plan::FilmLayout> all = films;
   mechanics::FilmCells all_cells;
-  std::unique_ptr<FilmGeometry> geometry;
+  std::unique_ptr<mechanics::FilmGeometry> geometry;
 
   explicit Case(const std::vector<plan::FilmWallKind>& others = {}) {
     for (const plan::FilmWallKind wall : others) {
@@ -28,7 +28,7 @@ struct Case : SmallSystem {
       all.back().wall_stiffness = kStiffness;
     }
     all_cells = mechanics::number_cells(all);
-    geometry = std::make_unique<FilmGeometry>(model->geometry.grid, all, all_cells, system.get());
+    geometry = std::make_unique<mechanics::FilmGeometry>(model->geometry.grid, all, all_cells, system.get());
     mechanics::SimulationState state = state_at(bent(1e-3));
     EXPECT_TRUE(factor->renew(0.01, state));
   }
@@ -46,7 +46,7 @@ TEST(WallResponse, RestVolumeIsAreaTimesThicknessAtTheCentre) {
   c.films[0].wall = plan::FilmWallKind::kRigid;
   c.films[0].rest_thickness = geometry::ScalarField{2, 1, {1e-3, 3e-3}};  // linear in xi
   const mechanics::FilmCells cells = mechanics::number_cells(c.films);
-  const FilmGeometry geometry(c.model->geometry.grid, c.films, cells, nullptr);
+  const mechanics::FilmGeometry geometry(c.model->geometry.grid, c.films, cells, nullptr);
   const WallResponse walls(c.films, cells, geometry, CouplingMode::kExact, nullptr);
   for (const int cell : {0, 4, 35}) {
     const double xi = (cell % 6 + 0.5) / 6.0;
@@ -61,7 +61,7 @@ TEST(WallResponse, WallsOfTheirOwnAreSpringsOrDoNotGiveWay) {
   films[0].wall_stiffness = kStiffness;
   films[1].wall = plan::FilmWallKind::kRigid;
   const mechanics::FilmCells cells = mechanics::number_cells(films);
-  const FilmGeometry geometry(c.model->geometry.grid, films, cells, nullptr);
+  const mechanics::FilmGeometry geometry(c.model->geometry.grid, films, cells, nullptr);
   WallResponse walls(films, cells, geometry, CouplingMode::kExact, nullptr);
   walls.update();
   EXPECT_FALSE(walls.is_implicit());

@@ -1,13 +1,11 @@
 // The mid-surfaces of the films: where they are at rest, and how they follow the tissue.
 
-#include "core/step/film_geometry.h"
+#include "core/mechanics/film_geometry.h"
 
 #include "tests/unit/mechanics/small_system.h"
 
-namespace lipofill::step {
+namespace lipofill::mechanics {
 namespace {
-
-using mechanics::SmallSystem;
 
 /// A cell of the small plan: 48 mm in 6 parts.
 constexpr double kCellArea = 8e-3 * 8e-3;
@@ -58,7 +56,7 @@ TEST(FilmGeometry, AFilmWithWallsOfItsOwnStays) {
   plan::FilmLayout winkler = c.films[0];
   winkler.wall = plan::FilmWallKind::kWinkler;
   const std::vector<plan::FilmLayout> films{winkler, c.films[0]};
-  const mechanics::FilmCells cells = mechanics::number_cells(films);
+  const FilmCells cells = number_cells(films);
   FilmGeometry geometry(c.model->geometry.grid, films, cells, c.system.get());
   EXPECT_EQ(geometry.metric(0).vertices.row(2).cwiseAbs().maxCoeff(), 0.0);
   EXPECT_NEAR(geometry.metric(1).vertices(2, 0), -2e-3, 1e-15) << "below 2 mm of skin";
@@ -69,4 +67,4 @@ TEST(FilmGeometry, AFilmWithWallsOfItsOwnStays) {
 }
 
 }  // namespace
-}  // namespace lipofill::step
+}  // namespace lipofill::mechanics

@@ -1,9 +1,9 @@
-#include "core/step/film_geometry.h"
+#include "core/mechanics/film_geometry.h"
 
-namespace lipofill::step {
+namespace lipofill::mechanics {
 
 FilmGeometry::FilmGeometry(const geometry::LayeredGrid& grid, const std::vector<plan::FilmLayout>& films,
-                           const mechanics::FilmCells& cells, const mechanics::TissueSystem* system)
+                           const FilmCells& cells, const TissueSystem* system)
     : films_(films), cells_(cells), system_(system) {
   for (size_t f = 0; f < films.size(); ++f) {
     rest_metric_.push_back(
@@ -26,4 +26,15 @@ film::FilmMetric FilmGeometry::metric_at(size_t film, const Eigen::Matrix3Xd& po
   return film::compute_film_metric(films_[film].grid, gap_of(film).mid_surface(positions));
 }
 
-}  // namespace lipofill::step
+Eigen::VectorXd FilmGeometry::rest_volume() const {
+  Eigen::VectorXd volume(cells_.n());
+  for (size_t f = 0; f < films_.size(); ++f) {
+    for (int cell = 0; cell < cells_.n_of(f); ++cell) {
+      const geometry::ChartPoint centre = films_[f].cell_centre(cell);
+      volume[cells_.offset[f] + cell] = rest_area(f)[cell] * films_[f].rest_thickness.at(centre.xi, centre.eta);
+    }
+  }
+  return volume;
+}
+
+}  // namespace lipofill::mechanics

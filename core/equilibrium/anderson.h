@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace lipofill::equilibrium {
+
+/// Anderson's acceleration of a fixed-point iteration y <- y + f(y) (Walker & Ni 2011, type II):
+///
+///     y' = y + f - (dY + dF) c,   c = argmin |f - dF c|
+///
+/// with the last kDepth differences of y and f as columns of dY and dF. Sums in a fixed order.
+/// Checked by tests/unit/equilibrium/anderson_test.cc.
+class AndersonMixing {
+ public:
+  static constexpr int kDepth = 8;
+
+  /// Forgets the past.
+  void reset() { n_ = 0; }
+
+  /// Returns y'.
+  /// @param n_measured  the first entries of f, over which its size is minimised
+  void mix(const Eigen::VectorXd& y, const Eigen::VectorXd& f, Eigen::Index n_measured, Eigen::VectorXd& next);
+
+ private:
+  int n_ = 0;  ///< calls since the last reset
+  Eigen::VectorXd last_y_, last_f_;
+  Eigen::MatrixXd moved_;    ///< dY, columns in turn
+  Eigen::MatrixXd changed_;  ///< dF
+};
+
+}  // namespace lipofill::equilibrium

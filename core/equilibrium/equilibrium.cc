@@ -1,0 +1,82 @@
+#include "core/equilibrium/equilibrium.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace lipofill::equilibrium {
+namespace {
+
+/// A part of the volume smaller than this is not tried any more: the path ends.
+constexpr double kLeastPart = 1.0 / 64.0;
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<Equilibrium>> Equilibrium::create(const model::FaceModel& model,
+                                                                 const std::vector<plan::FilmLayout>& films,
+                                                                 const mechanics::FilmCells& cells,
+                                                                 mechanics::TissueSystem& system,
+                                                                 mechanics::FilmGeometry& geometry,
+                                                                 const StaticLoad& load, mechanics::StepCost& cost) {
+  auto factor = mechanics::TissueFactor::create(model, system, cost);
+  if (!factor.ok()) return factor.status();
+  return std::unique_ptr<Equilibrium>(
+      new Equilibrium(find_pools(films, cells), *std::move(factor), films, cells, system, geometry, load));
+}
+
+Equilibrium::Equilibrium(Pools pools, std::unique_ptr<mechanics::TissueFactor> factor,
+                         const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
+                         mechanics::TissueSystem& system, mechanics::FilmGeometry& geometry, const StaticLoad& load)
+    : pools_(std::move(pools)),
+      factor_(std::move(factor)),
+      balance_(system, films, cells, pools_, geometry, load),
+      n_dofs_(system.tissue().n_dofs()) {}
+
+Settled Equilibrium::find(const PoolTarget& target, const Eigen::VectorXd& springs, double tolerance) {
+  factor_->begin();
+  HeldResponse response(*factor_, pools_);
+  Solver solver(balance_, response, pools_);
+  const Eigen::VectorXd rest = rest_volume();
+  Shape good = Shape::at_rest(n_dofs_, pools_);
+  std::string reason;
+  double share = 0.0;
+  double part = 1.0;
+  while (share < 1.0) {
+    const double next = std::min(1.0, share + part);
+    PoolTarget partial = target;
+    if (next < 1.0) partial.volume = rest + next * (target.volume - rest);
+    Shape shape = good;
+    if (solver.solve(partial, springs, tolerance, shape)) {
+      good = std::move(shape);
+      share = next;
+      part *= 2.0;
+      continue;
+    }
+    reason = solver.reason();
+    part *= 0.5;
+    if (part < kLeastPart) break;
+  }
+  balance_.bring_to(good, springs);
+  PoolTarget reached = target;
+  if (share < 1.0) reached.volume = rest + share * (target.volume - rest);
+  Settled settled = describe(reached, good, share);
+  if (share < 1.0) settled.reason = reason;
+  settled.cost = solver.cost();
+  return settled;
+}
+
+Settled Equilibrium::describe(const PoolTarget& target, const Shape& shape, double share) const {
+  Settled settled;
+  settled.share = share;
+  settled.positions = balance_.positions();
+  settled.cell_volume = balance_.gap().cwiseMax(0.0);
+  settled.cell_pressure = balance_.cell_pressure();
+  settled.pool_volume = pools_.sum(settled.cell_volume);
+  settled.pool_head = shape.pressure.head(pools_.n());
+  settled.fat_volume = target.volume;
+  settled.closed = shape.closed;
+  settled.force_error = balance_.relative_force();
+  settled.is_double = factor_->is_double();
+  return settled;
+}
+
+}  // namespace lipofill::equilibrium

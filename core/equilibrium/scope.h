@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/mechanics/wall_fibres.h"
+#include "core/model/face_model.h"
+#include "core/plan/film_layout.h"
+#include "core/plan/simulation_spec.h"
+
+namespace lipofill::equilibrium {
+
+/// Why the settled shape of a plan cannot be found directly: the way there decides it.
+struct Hindrance {
+  std::string field;  ///< of lipofill.v1.SimulationSpec, for example "fat.yield_stress_pa"
+  std::string why;    ///< a clause with the field as its subject
+
+  std::string text() const { return field + " " + why; }
+};
+
+/// The first field of a plan that forbids its direct solution; nothing for a plan that has one. A
+/// settled shape is the limit of the plan stepped for ever where fat flows under any pressure
+/// difference, however small, and where tissue springs back the way it gave: not with a yield
+/// stress, ligaments that may break, tissue that fat has yet to enter, the lumped coupling, films
+/// with walls of their own, or fat that circulates through leaky walls under gravity.
+/// Checked by tests/unit/equilibrium/scope_test.cc.
+///
+/// @param films      of the plan, placed
+/// @param ligaments  of the plan, placed: those with a name have their breaking force from there
+/// @param injected_until  the last injection ends then [s]
+std::optional<Hindrance> find_hindrance(const plan::SimulationSpec& spec, const model::FaceModel& model,
+                                        const std::vector<plan::FilmLayout>& films,
+                                        const std::vector<mechanics::LigamentLayout>& ligaments, double injected_until);
+
+}  // namespace lipofill::equilibrium

@@ -11,6 +11,10 @@ constexpr int kMaxIterations = 80;
 /// An iteration that leaves more of the error than this is slow; so many of them call for a factor.
 constexpr double kSlowGain = 0.55;
 constexpr int kMaxSlowIterations = 3;
+/// An error that grows by more than this is going astray.
+constexpr double kGrowth = 3.0;
+/// After the first step the factor is of a shape far away where this share of the forces is left.
+constexpr double kFarShare = 0.2;
 /// Rounds of the active sets, and those after which cells only close.
 constexpr int kMaxSetChanges = 40;
 constexpr int kOpeningSetChanges = 20;
@@ -26,7 +30,7 @@ bool Solver::solve(const PoolTarget& target, const Eigen::VectorXd& springs, dou
   springs_ = springs;
   reason_.clear();
   bring_to(shape);
-  if (!response_.has_factor() && !renew_at(shape)) return false;
+  if (!response_.has_factor() && !renew()) return false;
   for (int change = 0; change < kMaxSetChanges; ++change) {
     if (!iterate(target, tolerance, shape) || !make_volumes_exact(target, shape)) return false;
     if (measure(target, tolerance, shape) > 1.0) continue;
@@ -39,6 +43,10 @@ bool Solver::solve(const PoolTarget& target, const Eigen::VectorXd& springs, dou
 
 /// Iterates with the active sets as they are. The balance is at `shape` before and after.
 bool Solver::iterate(const PoolTarget& target, double tolerance, Shape& shape) {
+  if (measure(target, tolerance, shape) <= 1.0) return true;
+  // The first step brings the volumes in, and forces out of balance: what was before tells nothing.
+  mixing_.reset();
+  if (!advance(shape)) return false;
   mixing_.reset();
   Shape best = shape;
   double best_error = kInfinity, last_error = kInfinity;
@@ -50,15 +58,18 @@ bool Solver::iterate(const PoolTarget& target, double tolerance, Shape& shape) {
       best = shape;
       best_error = error;
     }
-    if (error > kSlowGain * last_error) ++slow;
-    const bool grows = !(error <= last_error);
+    slow += error > kSlowGain * last_error;
+    const bool grows = !(error <= kGrowth * last_error);
+    const bool is_far = iteration == 0 && error * tolerance > kFarShare;
     last_error = error;
-    if (grows || slow >= kMaxSlowIterations) {
-      shape = best;
-      bring_to(shape);
+    if (is_far || grows || slow >= kMaxSlowIterations) {
+      if (grows) {
+        shape = best;
+        bring_to(shape);
+        last_error = measure(target, tolerance, shape);
+      }
       if (!response_.is_late(balance_)) break;
-      if (!renew_at(shape)) return false;
-      measure(target, tolerance, shape);
+      if (!renew()) return false;
       mixing_.reset();
       slow = 0;
       last_error = kInfinity;
@@ -89,7 +100,7 @@ bool Solver::advance(Shape& shape) {
   return true;
 }
 
-bool Solver::renew_at(const Shape&) {
+bool Solver::renew() {
   ++cost_.factors;
   if (response_.renew(balance_, springs_)) return true;
   reason_ = "the tissue's stiffness is not positive definite";

@@ -37,7 +37,7 @@ class Solver {
  private:
   bool iterate(const PoolTarget& target, double tolerance, Shape& shape);
   bool advance(Shape& shape);
-  bool renew_at(const Shape& shape);
+  bool renew();
   void bring_to(const Shape& shape);
   double measure(const PoolTarget& target, double tolerance, const Shape& shape);
   bool make_volumes_exact(const PoolTarget& target, Shape& shape);

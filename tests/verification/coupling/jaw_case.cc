@@ -22,17 +22,23 @@ JawPlan load_sample_plan(const std::string& file) {
   if (!plan.ok()) return {};
   EXPECT_TRUE(client::load_plan_landmarks(&*plan).ok());
   // What the daemon would have put there: the scan and the model are passed on as they are.
-  plan->plan.mutable_model()->mutable_scan_region()->set_scan("patients/jaw/scans/face");
   plan->plan.mutable_simulation()->set_model("patients/jaw/models/face");
-  std::ifstream scan_file(*plan->scan_file, std::ios::binary);
-  std::stringstream bytes;
-  bytes << scan_file.rdbuf();
-  auto scan = geometry::read_surface(bytes.str(), geometry::SurfaceFormat::kObj, 1e-3);
+  geometry::SurfaceMesh face;
+  if (plan->scan_file.has_value()) {
+    plan->plan.mutable_model()->mutable_scan_region()->set_scan("patients/jaw/scans/face");
+    std::ifstream scan_file(*plan->scan_file, std::ios::binary);
+    std::stringstream bytes;
+    bytes << scan_file.rdbuf();
+    auto scan = geometry::read_surface(bytes.str(), geometry::SurfaceFormat::kObj, 1e-3);
+    EXPECT_TRUE(scan.ok()) << scan.status();
+    if (!scan.ok()) return {};
+    face = *std::move(scan);
+  }
   auto model_spec = server::to_face_model_spec(plan->plan.model());
   auto spec = server::to_simulation_spec(plan->plan.simulation());
-  EXPECT_TRUE(scan.ok() && model_spec.ok() && spec.ok()) << scan.status() << model_spec.status() << spec.status();
-  if (!scan.ok() || !model_spec.ok() || !spec.ok()) return {};
-  std::get<geometry::ScanRegionSpec>(model_spec->region).scan = *std::move(scan);
+  EXPECT_TRUE(model_spec.ok() && spec.ok()) << model_spec.status() << spec.status();
+  if (!model_spec.ok() || !spec.ok()) return {};
+  if (plan->scan_file.has_value()) std::get<geometry::ScanRegionSpec>(model_spec->region).scan = std::move(face);
   return {*std::move(model_spec), *std::move(spec), true};
 }
 

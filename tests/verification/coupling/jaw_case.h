@@ -17,7 +17,7 @@ struct JawPlan {
 
 /// From client/examples/plans/jaw_angle.json; not ok where that fails, and the test with it.
 JawPlan load_jaw_plan();
-/// The same of another sample plan on the same face.
+/// The same of another sample plan, on that face or on a square.
 JawPlan load_sample_plan(const std::string& file);
 
 struct JawCase {

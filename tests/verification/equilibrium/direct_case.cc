@@ -60,7 +60,7 @@ std::unique_ptr<simulation::Simulation> step_until_at_rest(std::shared_ptr<const
                                                            plan::SimulationSpec spec, double left) {
   spec.settle_skin_speed = 1e-12;
   spec.end = 1e6;
-  spec.max_step = 1e3;
+  spec.max_step = 60.0;
   spec.max_injection_step = 0.5;
   spec.error_tolerance = 0.2e-3;
   auto created = simulation::Simulation::create(std::move(model), spec);

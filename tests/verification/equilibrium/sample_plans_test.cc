@@ -13,10 +13,11 @@ TEST(Driver, Plan) {
   const char* name = std::getenv("PLAN");
   JawPlan plan = load_sample_plan(std::string(name ? name : "jaw_angle") + ".json");
   ASSERT_TRUE(plan.ok);
+  if (getenv("FACTOR")) for (auto& i : plan.simulation.injections) i.volume *= atof(getenv("FACTOR"));
   auto model = model::build_face_model(plan.model, nullptr);
   ASSERT_TRUE(model.ok());
   DirectCase direct(*model, plan.simulation);
-  for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-6}) {
+  for (const double tolerance : {1e-3, 1e-4}) {
     const mechanics::StepCost before = direct.cost();
     const equilibrium::Settled s = direct.solve(tolerance);
     const auto& c = direct.cost().times;

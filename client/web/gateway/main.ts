@@ -3,28 +3,35 @@ import { connectNodeAdapter } from "@connectrpc/connect-node";
 import { writeFileSync } from "node:fs";
 import { createServer, type IncomingMessage, type ServerResponse } from "node:http";
 import type { AddressInfo } from "node:net";
-import { help, isLoopback, parseOptions, UsageError, type Options } from "./options";
+import { CallerTransports } from "./callers";
+import { refuseByHost, type Refusal } from "./hosts";
+import { BodyRoom, mostConnections, mostMessageBytes, serverOptions } from "./limits";
+import { help, parseOptions, UsageError, type Options } from "./options";
 import { servePages } from "./pages";
 import { connectDaemon, passOn } from "./passthrough";
 
-/** Names of this machine only: a page of another site that has its name point here gets nothing. */
-function isMeant(request: IncomingMessage, options: Options): boolean {
-  if (!isLoopback(options.host)) return true;
-  const host = (request.headers.host ?? "").replace(/:\d+$/, "").replace(/^\[|\]$/g, "");
-  return isLoopback(host);
+/** Refuses, and closes the connection: what else it sends is not read. */
+function refuse(response: ServerResponse, { status, text }: Refusal): void {
+  response.writeHead(status, { "content-type": "text/plain; charset=utf-8", connection: "close" }).end(`${text}\n`);
 }
 
 function serve(options: Options): void {
   const pages = servePages(options.page, options.samples);
   const calls = connectNodeAdapter({
-    routes: passOn(connectDaemon(options.daemon, options.daemonCa)),
-    readMaxBytes: 4 << 20,
+    routes: passOn(new CallerTransports(() => connectDaemon(options.daemon, options.daemonCa))),
+    readMaxBytes: mostMessageBytes,
     fallback: (request, response) => pages(request as IncomingMessage, response as ServerResponse),
   });
-  const server = createServer((request: IncomingMessage, response: ServerResponse) => {
-    if (isMeant(request, options)) return calls(request, response);
-    response.writeHead(421, { "content-type": "text/plain" }).end("ask for this machine by its own name\n");
+  const rules = { listen: options.host, names: options.hostNames };
+  const room = new BodyRoom();
+  const server = createServer(serverOptions, (request: IncomingMessage, response: ServerResponse) => {
+    const refusal = refuseByHost(request, rules);
+    if (refusal !== undefined) return refuse(response, refusal);
+    if (!room.take(request, response))
+      return refuse(response, { status: 503, text: "too much is being sent; try again" });
+    calls(request, response);
   });
+  server.maxConnections = mostConnections;
   server.on("error", (error: NodeJS.ErrnoException) => {
     const why = error.code === "EADDRINUSE" ? "is taken by another program" : error.message;
     console.error(`gateway: cannot listen on ${options.host}:${options.port}: ${why}`);

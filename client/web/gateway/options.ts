@@ -3,10 +3,13 @@ import { existsSync } from "node:fs";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
+import { isLoopback, parseHost } from "./hosts";
 
 export interface Options {
   host: string;
   port: number;
+  /** names in Host that are served, beside addresses and localhost */
+  hostNames: string[];
   /** host:port of the daemon, or unix:/path */
   daemon: string;
   /** PEM file of whoever signed the daemon's certificate; empty: plain text */
@@ -27,6 +30,8 @@ export const help = `Serves Lipofill's page and passes its calls on to the daemo
   --insecure-listen-anywhere
                          allow an address that is not loopback. What passes is not encrypted: put a proxy that encrypts
                          before it, or use deploy/envoy
+  --host-name NAME       a name by which browsers know this gateway; can be given several times. Without it they must
+                         ask for an address or localhost
   --daemon ADDRESS       of lipofilld, host:port or unix:/path (default: LIPOFILL_SERVER, else 127.0.0.1:50061)
   --daemon-ca FILE       the daemon encrypts; PEM of whoever signed its certificate
   --page DIR             the built page (default: "page" beside this program)
@@ -36,18 +41,19 @@ export const help = `Serves Lipofill's page and passes its calls on to the daemo
 
 Credentials are the browser's: the header Authorization is passed on, as is x-request-id.`;
 
-const loopback = new Set(["127.0.0.1", "::1", "localhost"]);
-
-export function isLoopback(host: string): boolean {
-  return loopback.has(host) || host.startsWith("127.");
-}
-
 function parseAddress(text: string): { host: string; port: number } {
   const match = /^(?:\[([0-9a-fA-F:]+)\]|([^:]+)):(\d{1,5})$/.exec(text);
   const port = match === null ? NaN : Number(match[3]);
   if (match === null || port > 65535)
     throw new UsageError(`--listen is '${text}', must be HOST:PORT with a port of at most 65535`);
   return { host: match[1] ?? match[2], port };
+}
+
+function checkHostName(text: string): string {
+  const host = parseHost(text);
+  if (host === undefined || host.port !== undefined)
+    throw new UsageError(`--host-name is '${text}', must be a name without a port, such as planner.example.org`);
+  return host.host;
 }
 
 function checkFolder(flag: string, folder: string, file: string): string {
@@ -66,6 +72,7 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
       options: {
         listen: { ...text, default: "127.0.0.1:8080" },
         "insecure-listen-anywhere": { type: "boolean", default: false },
+        "host-name": { ...text, multiple: true, default: [] as string[] },
         daemon: { ...text, default: environment.LIPOFILL_SERVER ?? "127.0.0.1:50061" },
         "daemon-ca": { ...text, default: "" },
         page: text,
@@ -95,6 +102,7 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
   return {
     host,
     port,
+    hostNames: values["host-name"].map(checkHostName),
     daemon: values.daemon,
     daemonCa: values["daemon-ca"],
     page: checkFolder("--page", values.page ?? join(beside, "page"), "index.html"),

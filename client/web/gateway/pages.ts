@@ -54,6 +54,8 @@ async function sendFile(file: string, request: IncomingMessage, response: Server
     response.end();
     return;
   }
+  // Whoever does not read lets the file go.
+  response.setTimeout(60_000, () => response.destroy());
   await pipeline(createReadStream(file), response).catch(() => response.destroy());
 }
 

@@ -9,12 +9,10 @@ import { createServer, type AddressInfo, type Socket } from "node:net";
 import { afterAll, beforeAll, describe, expect, it } from "vitest";
 import { BadRequestSchema } from "@google/rpc/error_details_pb";
 import { FrameService, WatchRequestSchema } from "@wire/frame_service_pb";
-import { OperationService } from "@wire/operation_service_pb";
 import { PatientService, ScanFormat, UploadScanRequestSchema, type ScanSchema } from "@wire/patient_service_pb";
-import { ModelSpecSchema } from "@wire/model_pb";
-import { SimulationSpecSchema } from "@wire/simulation_pb";
 import { SimulationService } from "@wire/simulation_service_pb";
 import { toBinary } from "@bufbuild/protobuf";
+import { startEndless } from "../system/endless";
 import { System } from "../system/system";
 
 const system = new System();
@@ -30,46 +28,6 @@ beforeAll(async () => {
   simulations = createClient(SimulationService, transport);
 });
 afterAll(() => system.stop());
-
-const square = create(ModelSpecSchema, {
-  geometry: { case: "square", value: { lengthXiMm: 40, lengthEtaMm: 40 } },
-  nXi: 24,
-  nEta: 24,
-  layers: [
-    {
-      name: "skin",
-      thicknessMm: { kind: { case: "constant", value: 2 } },
-      youngsModulusKpa: 100,
-      poissonRatio: 0.45,
-      densityKgM3: 1100,
-    },
-  ],
-  rim: { kind: 1 },
-  base: { kind: 1 },
-});
-const film = {
-  name: "film",
-  belowLayer: "skin",
-  nXi: 12,
-  nEta: 12,
-  zones: [{ name: "all", shape: { case: "box" as const, value: { xiMin: 0, xiMax: 1, etaMin: 0, etaMax: 1 } } }],
-};
-
-/** A simulation that goes on until it is stopped. */
-async function startEndless(): Promise<string> {
-  const { name: parent } = await patients.createPatient({ requestId: `p${Date.now()}` });
-  let operation = await patients.buildModel({ parent, spec: square });
-  const operations = createClient(OperationService, transport);
-  while (!operation.done) operation = await operations.waitOperation({ name: operation.name });
-  const { models } = await patients.listModels({ parent });
-  const spec = create(SimulationSpecSchema, {
-    model: models[0].name,
-    films: [film],
-    injections: [{ zone: "all", volumeMl: 0.4, rateMlPerS: 0.1 }],
-    time: { stepMs: 10, endS: 100_000, settleSkinSpeedMmPerS: 0 },
-  });
-  return (await simulations.createSimulation({ spec, start: true })).name;
-}
 
 function fetchText(
   path: string,
@@ -163,7 +121,7 @@ function stall(simulation: string): ReturnType<typeof request> {
 
 describe("a slow browser", () => {
   it("costs its own stream, and no memory that grows", async () => {
-    const simulation = await startEndless();
+    const simulation = await startEndless(transport);
     const stalled = Array.from({ length: 12 }, () => stall(simulation));
     await new Promise((resolve) => setTimeout(resolve, 3000));
     const settled = residentKb(system.gateway!.pid!);

@@ -15,11 +15,13 @@ describe("the gateway's options", () => {
     expect(() => parse("--listen", "0.0.0.0:80")).toThrow(/--listen is '0.0.0.0:80'.*plain text/);
     expect(parse("--listen", "0.0.0.0:80", "--insecure-listen-anywhere")).toMatchObject({ host: "0.0.0.0" });
     expect(parse("--listen", "[::1]:0")).toMatchObject({ host: "::1", port: 0 });
+    expect(() => parse("--listen", "127.evil.com:80")).toThrow(/--listen is '127.evil.com:80'.*plain text/);
   });
   it("name what is wrong", () => {
     expect(() => parse("--listen", "8080")).toThrow(/--listen is '8080', must be HOST:PORT/);
     expect(() => parse("--daemon", "nowhere")).toThrow(/--daemon is 'nowhere'/);
     expect(() => parse("--daemon-ca", "/nowhere.pem")).toThrow(/--daemon-ca is '\/nowhere.pem'/);
+    expect(() => parse("--host-name", "a.example:80")).toThrow(/--host-name is 'a.example:80', must be a name without/);
     expect(() => parse("--port", "1")).toThrow(/--port/);
     expect(() => parseOptions(["--page", "/nowhere"], {})).toThrow(/--page is '\/nowhere'/);
   });
@@ -27,7 +29,16 @@ describe("the gateway's options", () => {
     expect(parseOptions(["--page", page], { LIPOFILL_SERVER: "unix:/run/x" })).toMatchObject({ daemon: "unix:/run/x" });
   });
   it("are all in the help", () => {
-    for (const option of ["listen", "daemon", "daemon-ca", "page", "samples", "port-file", "insecure-listen-anywhere"])
+    for (const option of [
+      "listen",
+      "daemon",
+      "daemon-ca",
+      "page",
+      "samples",
+      "port-file",
+      "host-name",
+      "insecure-listen-anywhere",
+    ])
       expect(help).toContain(`--${option}`);
     expect(parse("--help")).toBe("help");
   });

@@ -4,19 +4,17 @@
 #include <grpcpp/health_check_service_interface.h>
 #include <grpcpp/impl/server_builder_option.h>
 #include <grpcpp/impl/server_builder_plugin.h>
+#include <grpcpp/resource_quota.h>
 #include <grpcpp/server_builder.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
 #include <thread>
 
-#include "absl/strings/match.h"
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_join.h"
 #include "absl/synchronization/mutex.h"
 #include "server/entry/call_watcher.h"
 #include "server/entry/tls_credentials.h"
+#include "server/ops/listen_address.h"
 #include "server/sessions/draining.h"
 #include "spdlog/spdlog.h"
 
@@ -32,15 +30,24 @@ int to_milliseconds(double seconds) {
   return static_cast<int>(std::lround(1e3 * seconds));
 }
 
+/// All that connections have sent and nobody has taken yet.
+constexpr size_t kTransportBytes = size_t{512} << 20;
+/// A connection without a call is closed after so long; its client makes another when it calls.
+constexpr int kMaxIdleMs = 600'000;
+
 /// A peer that has frozen or lost its network is found by pings, or, when bytes wait for it, by
-/// TCP's own probes; one that pings us more than every ten seconds is turned away.
+/// TCP's own probes (DoorBounds::unread); one that pings us more than every ten seconds is turned
+/// away. Headers may have what the door lets by: those that exceed gRPC's bound may end the
+/// connection, which where a front shares it is not their sender's alone.
 void set_channel_arguments(const BackendOptions& options, grpc::ServerBuilder& builder) {
-  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, to_milliseconds(options.keepalive_s));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, to_milliseconds(options.keepalive_timeout_s));
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 10'000);
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, 256);
+  builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, static_cast<int>(FrameMeter::kMostHeaderBytes));
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kMaxIdleMs);
+  builder.SetResourceQuota(grpc::ResourceQuota("transport").Resize(kTransportBytes));
 }
 
 void watch_calls(grpc::ServerBuilder& builder, Metrics& metrics, CallGate& gate) {
@@ -59,72 +66,105 @@ class WithoutReflection : public grpc::ServerBuilderOption {
   }
 };
 
-bool is_unix(const std::string& address) {
-  return absl::StartsWith(address, "unix:");
-}
-
-absl::Status cannot_listen(const std::string& address) {
-  return absl::UnavailableError(
-      absl::StrCat("cannot listen on ", address,
-                   is_unix(address) ? ": may this user make files in its directory?" : ": is the port taken?"));
-}
-
-/// Restricts UNIX sockets to the daemon's user and group.
-void restrict_sockets(const std::vector<std::string>& addresses) {
-  for (const std::string& address : addresses) {
-    if (!is_unix(address)) continue;
-    const std::string rest = address.substr(5);
-    ::chmod((absl::StartsWith(rest, "//") ? rest.substr(2) : rest).c_str(), 0660);
-  }
-}
-
 }  // namespace
 
-GrpcServer::GrpcServer(const ServiceGuard& guard, Backend& backend)
+GrpcServer::GrpcServer(const ServiceGuard& guard, const DoorBounds& bounds, Backend& backend)
     : backend_(backend),
       gate_(backend, guard.authenticator, guard.audit),
       patients_(backend),
       operations_(backend),
       simulations_(backend),
-      frames_(backend) {}
+      frames_(backend),
+      door_(bounds) {}
+
+GrpcServer::~GrpcServer() {
+  sweeper_.reset();
+  door_.close();  // before what it hands connections to
+}
 
 absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<std::string>& addresses,
-                                                              const ServiceGuard& guard, Backend& backend) {
+                                                              const ServiceGuard& guard, const DoorBounds& bounds,
+                                                              Backend& backend) {
   // Debian builds absl, on whose mutexes gRPC runs, with its search for deadlocks, which takes part
   // in every lock.
   absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
   grpc::EnableDefaultHealthCheckService(true);
   // The library is named here so that the linker takes it in.
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
-  std::unique_ptr<GrpcServer> self(new GrpcServer(guard, backend));
+  std::unique_ptr<GrpcServer> self(new GrpcServer(guard, bounds, backend));
+  if (auto listens = self->listen(addresses, guard.settings.has_tls()); !listens.ok()) return listens;
   grpc::ServerBuilder builder;
   set_channel_arguments(backend.options, builder);
   watch_calls(builder, backend.metrics, self->gate_);
   if (!guard.reflection) builder.SetOption(std::make_unique<WithoutReflection>());
-  const auto plain = grpc::InsecureServerCredentials();
-  const auto on_tcp = guard.settings.has_tls() ? make_tls_credentials(guard.settings) : plain;
-  std::vector<int> ports(addresses.size());
-  for (size_t i = 0; i < addresses.size(); ++i) {
-    builder.AddListeningPort(addresses[i], is_unix(addresses[i]) ? plain : on_tcp, &ports[i]);
+  using From = grpc::ServerBuilder::experimental_type::ExternalConnectionType;
+  self->plain_ = builder.experimental().AddExternalConnectionAcceptor(From::FROM_FD, grpc::InsecureServerCredentials());
+  if (guard.settings.has_tls()) {
+    self->encrypted_ =
+        builder.experimental().AddExternalConnectionAcceptor(From::FROM_FD, make_tls_credentials(guard.settings));
   }
   builder.RegisterService(&self->patients_);
   builder.RegisterService(&self->operations_);
   builder.RegisterService(&self->simulations_);
   builder.RegisterService(&self->frames_);
   self->server_ = builder.BuildAndStart();
-  const auto failed = std::find(ports.begin(), ports.end(), 0);
-  if (failed != ports.end()) return cannot_listen(addresses[failed - ports.begin()]);
-  if (self->server_ == nullptr) return cannot_listen(absl::StrJoin(addresses, ", "));
-  restrict_sockets(addresses);
-  for (size_t i = addresses.size(); i-- > 0;) {
-    if (!is_unix(addresses[i])) self->port_ = ports[i];
-  }
+  if (self->server_ == nullptr) return absl::InternalError("gRPC does not start; its own log says why");
+  if (auto opened = self->open_door(); !opened.ok()) return opened;
+  self->sweeper_ =
+      std::make_unique<Periodic>("sweeper", std::chrono::seconds(1), [gate = &self->gate_] { gate->sweep(); });
   return self;
 }
 
+absl::Status GrpcServer::listen(const std::vector<std::string>& addresses, bool is_encrypted) {
+  for (const std::string& text : addresses) {
+    const auto address = parse_listen_address(text);
+    if (!address.ok()) return address.status();
+    auto sockets = address->is_unix() ? listen_on_path(address->unix_path) : listen_on(address->host, address->port);
+    if (!sockets.ok()) return sockets.status();
+    if (port_ == 0) port_ = sockets->front().port;
+    for (ListeningSocket& socket : *sockets) {
+      listeners_.push_back({is_encrypted && !address->is_unix(), own_address(socket)});
+      door_.add(std::move(socket), listeners_.back().is_encrypted);
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status GrpcServer::open_door() {
+  return door_.open([this](int socket, size_t listener) {
+    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
+    connection.fd = socket;
+    (listeners_[listener].is_encrypted ? encrypted_ : plain_)->HandleNewConnection(&connection);
+  });
+}
+
+// The kernel completes a connection before it is accepted: without an answer to wait for, the
+// door's count says whether it was.
+absl::Status GrpcServer::check_reachable() const {
+  constexpr std::chrono::seconds kTimeout{5};
+  for (const Listener& listener : listeners_) {
+    const uint64_t before = door_.figures().accepted;
+    if (auto reached = knock(listener.own, !listener.is_encrypted, kTimeout); !reached.ok()) return reached;
+    const auto end = std::chrono::steady_clock::now() + kTimeout;
+    while (door_.figures().accepted == before) {
+      if (std::chrono::steady_clock::now() > end) return absl::UnavailableError("a connection to it is not accepted");
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  return absl::OkStatus();
+}
+
+void GrpcServer::set_reachable(bool reachable) {
+  const std::lock_guard lock(health_mutex_);
+  if (!backend_.stopping) server_->GetHealthCheckService()->SetServingStatus(reachable);
+}
+
 bool GrpcServer::drain(Seconds delay, Seconds timeout) {
-  server_->GetHealthCheckService()->SetServingStatus(false);
-  backend_.stopping = true;
+  {
+    const std::lock_guard lock(health_mutex_);
+    server_->GetHealthCheckService()->SetServingStatus(false);
+    backend_.stopping = true;
+  }
   std::this_thread::sleep_for(delay);
   backend_.sessions.suspend_all();
   spdlog::info("simulations are at rest");
@@ -136,7 +176,8 @@ bool GrpcServer::drain(Seconds delay, Seconds timeout) {
   backend_.workers.stop();
   if (calls_ended.wait_for(for_calls + kToCutOff) == std::future_status::ready) return true;
   spdlog::warn("clients that neither read nor leave are cut off");
-  return false;
+  door_.close();
+  return calls_ended.wait_for(kToCutOff) == std::future_status::ready;
 }
 
 // Shutdown() may never return: data that a frozen peer does not take from its socket cannot be

@@ -2,6 +2,8 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -14,11 +16,14 @@
 #include "server/backend/parking.h"
 #include "server/backend/simulation_recovery.h"
 #include "server/grpc_server.h"
+#include "server/ops/connection_metrics.h"
 #include "server/ops/drain_guard.h"
+#include "server/ops/file_limit.h"
 #include "server/ops/logging.h"
 #include "server/ops/metrics_server.h"
 #include "server/ops/options.h"
 #include "server/ops/process_figures.h"
+#include "server/ops/self_check.h"
 #include "server/ops/service_manager.h"
 #include "server/ops/signals.h"
 #include "server/store/backup.h"
@@ -67,23 +72,45 @@ BackendOptions backend_options(const Options& options) {
   return backend;
 }
 
+/// Bounds connections by the settings, and by the files that this process may open.
+DoorBounds door_bounds(const Options& options) {
+  const size_t files = raise_file_limit();
+  DoorBounds bounds;
+  bounds.connections = std::min(static_cast<size_t>(options.max_connections), connections_within(files));
+  bounds.connections_per_peer = static_cast<size_t>(options.max_connections_per_peer);
+  bounds.unread = std::chrono::milliseconds(std::lround(1e3 * options.keepalive_timeout_s));
+  if (bounds.connections < static_cast<size_t>(options.max_connections)) {
+    spdlog::warn("max-connections is {}, but {} open files allow {}: raise LimitNOFILE or ulimit -n",
+                 options.max_connections, files, bounds.connections);
+  }
+  return bounds;
+}
+
 /// Opens the audit log; nullptr when none is asked for.
 absl::StatusOr<std::unique_ptr<AuditLog>> open_audit_log(const Options& options) {
   const std::string path = options.security.audit_file_in(options.data);
   if (path.empty()) return nullptr;
-  return AuditLog::open(path, options.security.audit_rotate_mb * 1'000'000);
+  std::shared_ptr<const AnchorKey> key;
+  if (!options.security.audit_key_file.empty()) {
+    auto opened = AnchorKey::open(options.security.audit_key_file);
+    if (!opened.ok()) return opened.status();
+    key = std::make_shared<const AnchorKey>(*std::move(opened));
+  }
+  return AuditLog::open(path, options.security.audit_rotate_mb * 1'000'000, std::move(key));
 }
 
-absl::StatusOr<std::unique_ptr<MetricsServer>> serve_metrics(const Options& options, Backend& backend) {
+absl::StatusOr<std::unique_ptr<MetricsServer>> serve_metrics(const Options& options, const DoorFigures& door,
+                                                             Backend& backend) {
   if (options.metrics_listen.empty()) return nullptr;
   add_process_metrics(backend.metrics);
+  add_connection_metrics(door, backend.metrics);
   add_backend_metrics(backend, backend.metrics);
   auto server = MetricsServer::start(options.metrics_listen, backend.metrics);
   if (server.ok()) spdlog::info("metrics at {}, path /metrics (port {})", options.metrics_listen, (*server)->port());
   return server;
 }
 
-absl::Status serve_until_signal(const Options& options, const Backend& backend, const GrpcServer& server) {
+absl::Status serve_until_signal(const Options& options, const Backend& backend, GrpcServer& server) {
   if (!options.port_file.empty()) {
     if (auto written = write_port(options.port_file, server.port()); !written.ok()) return written;
   }
@@ -98,9 +125,12 @@ absl::Status serve_until_signal(const Options& options, const Backend& backend, 
   }
   const ServiceManager manager;
   manager.tell_ready("serving " + where);
-  const int signal = wait_for_signal(manager.watchdog_period(), [&backend, &manager] {
+  const SelfCheck self_check(
+      std::chrono::duration<double>(options.self_check_s), [&server] { return server.check_reachable(); },
+      [&server](bool reachable) { server.set_reachable(reachable); });
+  const int signal = wait_for_signal(manager.watchdog_period(), [&backend, &manager, &self_check] {
     backend.check_alive();
-    manager.tell_alive();
+    if (self_check.is_good()) manager.tell_alive();
   });
   spdlog::info("signal {}: draining", signal);
   manager.tell_stopping();
@@ -128,9 +158,10 @@ absl::Status serve(const Options& options) {
   if (auto back = bring_back_simulations(backend); !back.ok()) return back;
   const ParkingAttendant parking(backend, std::chrono::duration<double>(options.park_after_s));
   const auto server =
-      GrpcServer::start(options.listen, {options.security, **authenticator, audit->get(), options.reflection}, backend);
+      GrpcServer::start(options.listen, {options.security, **authenticator, audit->get(), options.reflection},
+                        door_bounds(options), backend);
   if (!server.ok()) return server.status();
-  const auto metrics_server = serve_metrics(options, backend);
+  const auto metrics_server = serve_metrics(options, (*server)->door_figures(), backend);
   const absl::Status served =
       metrics_server.ok() ? serve_until_signal(options, backend, **server) : metrics_server.status();
   guard.emplace(options.drain_timeout_s);

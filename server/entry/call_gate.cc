@@ -4,6 +4,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/door/door.h"
 #include "server/entry/method_rules.h"
 #include "server/security/refusals.h"
 #include "server/sessions/draining.h"
@@ -28,7 +29,7 @@ Credentials credentials_of(const Metadata& metadata, const grpc::ServerContextBa
   for (auto entry = first; entry != last; ++entry) {
     credentials.authorization.emplace_back(entry->second.data(), entry->second.size());
   }
-  credentials.is_unix_socket = absl::StartsWith(context.peer(), "unix:");
+  credentials.is_unix_socket = absl::StartsWith(context.peer(), kUnixCallers);
   const auto transport = context.auth_context();
   if (transport != nullptr && transport->IsPeerAuthenticated()) {
     credentials.has_certificate = true;
@@ -157,6 +158,13 @@ absl::Status CallGate::begin(Call& call) {
   backend_.metrics.calls().count_refused("AUDIT_UNAVAILABLE");
   return with_hints(absl::UnavailableError("the audit log cannot be written; nothing is changed without it"),
                     {"AUDIT_UNAVAILABLE", 5.0});
+}
+
+void CallGate::sweep() {
+  const auto revoked = authenticator_.revocations();
+  live_calls_.sweep([&revoked](const Principal& principal) {
+    return revoked != nullptr && revoked->has(principal) ? credentials_revoked() : absl::OkStatus();
+  });
 }
 
 void CallGate::note_answer(Call& call, const grpc::ByteBuffer& message) {

@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "server/backend/backend.h"
 #include "server/entry/call.h"
+#include "server/entry/live_calls.h"
 #include "server/security/allowance.h"
 #include "server/security/audit_log.h"
 #include "server/security/authenticator.h"
@@ -43,6 +44,11 @@ class CallGate {
   /// The answer of a call that makes something says how that is called.
   void note_answer(Call& call, const grpc::ByteBuffer& message);
 
+  LiveCalls& live_calls() { return live_calls_; }
+  /// Ends calls of callers who were revoked, and answers that nobody reads. To be called about once
+  /// a second.
+  void sweep();
+
  private:
   absl::Status admit_by_rule(Call& call, const Metadata& metadata, const grpc::ServerContextBase& context);
   absl::Status check_owner(const Scope& scope, const absl::StatusOr<Owner>& owner, const std::string& name);
@@ -52,6 +58,7 @@ class CallGate {
   Backend& backend_;
   const Authenticator& authenticator_;
   AuditLog* const audit_;
+  LiveCalls live_calls_;
   Allowance strangers_{100, std::chrono::minutes(1)};
 };
 

@@ -15,6 +15,8 @@ using grpc::experimental::InterceptionHookPoints;
 using grpc::experimental::InterceptorBatchMethods;
 using Clock = std::chrono::steady_clock;
 
+constexpr char kWatch[] = "/lipofill.v1.FrameService/Watch";
+
 /// Clients can send names of methods that do not exist; these have no place in metrics and logs.
 std::string name_of(const std::string& method) {
   return has_rule(method) ? method : "unknown";
@@ -36,6 +38,7 @@ class CallWatcher : public grpc::experimental::Interceptor {
   }
 
   ~CallWatcher() override {
+    if (number_ != 0) gate_.live_calls().remove(number_);
     if (!ended_) end(absl::StatusCode::kCancelled);
   }
 
@@ -49,6 +52,9 @@ class CallWatcher : public grpc::experimental::Interceptor {
     if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_MESSAGE)) {
       const grpc::ByteBuffer* message = batch->GetSerializedSendMessage();
       if (message != nullptr) note_sent(*message);
+    }
+    if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::POST_SEND_MESSAGE)) {
+      gate_.live_calls().end_answer(number_);
     }
     if (batch->QueryInterceptionHookPoint(InterceptionHookPoints::PRE_SEND_STATUS)) {
       end(static_cast<absl::StatusCode>(batch->GetSendStatus().error_code()));
@@ -66,11 +72,14 @@ class CallWatcher : public grpc::experimental::Interceptor {
     *call_ = read_call(method_, metadata);
     call_->gate = &gate_;
     call_->refusal = gate_.admit(*call_, metadata, context_);
+    number_ = gate_.live_calls().add(context_.c_call(), call_->principal);
   }
 
   void note_sent(const grpc::ByteBuffer& message) {
     counts_.sent_bytes.Increment(static_cast<double>(message.Length()));
     gate_.note_answer(*call_, message);
+    // Frames are shared by all who watch, and bounded where they are made.
+    if (!is_watch_) gate_.live_calls().begin_answer(number_, message.Length()).IgnoreError();
   }
 
   void end(absl::StatusCode code) {
@@ -96,6 +105,8 @@ class CallWatcher : public grpc::experimental::Interceptor {
   const MethodMetrics counts_;
   CallGate& gate_;
   const Clock::time_point began_ = Clock::now();
+  const bool is_watch_ = method_ == kWatch;
+  uint64_t number_ = 0;  ///< among the live calls
   bool ended_ = false;
 };
 

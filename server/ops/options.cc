@@ -129,18 +129,36 @@ void print_settings(const std::vector<Setting>& settings, const GivenValues& giv
   }
 }
 
-void check_listen(const Options& options, FieldViolations& violations) {
+/// Whether strangers on the network get no further than the handshake: each must show a
+/// certificate.
+bool asks_certificates(const SecuritySettings& security) {
+  return security.has_tls() && !security.tls_client_ca_file.empty() && !security.tls_client_certificate_optional;
+}
+
+void check_exposure(const Options& options, const std::string& text, FieldViolations& violations) {
+  if (options.insecure_listen_anywhere) return;
   const bool is_guarded = options.security.has_tls() && options.security.has_authentication();
+  const std::string reached = absl::StrCat("is \"", text, "\", which others on the network reach: ");
+  if (!is_guarded) {
+    violations.add("listen", absl::StrCat(reached,
+                                          "it needs tls-certificate-file, and token-keys-file or "
+                                          "client-certificates-file to know who calls; else it must be a loopback "
+                                          "address or a UNIX socket, or be told insecure-listen-anywhere"));
+  } else if (!asks_certificates(options.security) && !options.behind_proxy) {
+    violations.add("listen", absl::StrCat(reached,
+                                          "strangers can exhaust the daemon through a connection; put deploy/nginx or "
+                                          "deploy/envoy before it and tell it behind-proxy, or demand certificates of "
+                                          "all callers by tls-client-ca-file"));
+  }
+}
+
+void check_listen(const Options& options, FieldViolations& violations) {
   for (const std::string& text : options.listen) {
     const auto address = parse_listen_address(text);
     if (!address.ok()) {
       violations.add("listen", absl::StrCat("is \"", text, "\": ", std::string(address.status().message())));
-    } else if (!address->is_local() && !is_guarded && !options.insecure_listen_anywhere) {
-      violations.add("listen", absl::StrCat("is \"", text,
-                                            "\", which others on the network reach: it needs tls-certificate-file, and "
-                                            "token-keys-file or client-certificates-file to know who calls; else it "
-                                            "must be a loopback address or a UNIX socket, or be told "
-                                            "insecure-listen-anywhere"));
+    } else if (!address->is_local()) {
+      check_exposure(options, text, violations);
     }
   }
 }
@@ -161,6 +179,13 @@ std::vector<Setting> settings_of(Options& options) {
        &options.listen},
       {"insecure-listen-anywhere", "", "Serve without encryption on addresses that others on the network reach",
        &options.insecure_listen_anywhere},
+      {"behind-proxy", "",
+       "A proxy that bounds what connections may do (deploy/nginx, deploy/envoy) is all that reaches the addresses of "
+       "listen that are not loopback",
+       &options.behind_proxy},
+      {"max-connections", "N", "Connections that may be open at once", &options.max_connections, 1, 100000},
+      {"max-connections-per-peer", "N", "and of one address of the network", &options.max_connections_per_peer, 1,
+       100000},
       {"port-file", "PATH", "Write the first TCP port to this file once the daemon serves", &options.port_file},
       {"metrics-listen", "HOST:PORT", "Serve Prometheus metrics over HTTP, path /metrics; default: nowhere",
        &options.metrics_listen},
@@ -179,6 +204,9 @@ std::vector<Setting> settings_of(Options& options) {
       {"max-running", "N", "Simulations that share the workers; more wait in a queue until one of them ends or pauses",
        &options.max_running, 1, 100000},
       {"max-viewers", "N", "Streams of frames that may be open at once", &options.max_viewers, 1, 1e6},
+      {"self-check-s", "SECONDS",
+       "The daemon connects to its own addresses this often; health says NOT_SERVING while it cannot",
+       &options.self_check_s, 0.1, 3600},
       {"keepalive-s", "SECONDS", "A client silent for so long is asked whether it is there", &options.keepalive_s, 0.1,
        86400},
       {"keepalive-timeout-s", "SECONDS", "and dropped when it does not answer in so long", &options.keepalive_timeout_s,
@@ -240,7 +268,8 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   const auto line = read_command_line(argc, argv, settings, exit_code);
   if (!line) return std::nullopt;
   if (!line->audit_files.empty()) {
-    exit_code = print_audit_verification(line->audit_files);
+    const auto key = line->given.find("audit-key-file");
+    exit_code = print_audit_verification(line->audit_files, key == line->given.end() ? "" : key->second.texts.front());
     return std::nullopt;
   }
   const auto given = collect(*line, settings, options);

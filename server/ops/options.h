@@ -20,6 +20,10 @@ struct Options {
 
   std::vector<std::string> listen = {"127.0.0.1:50061"};
   bool insecure_listen_anywhere = false;
+  bool behind_proxy = false;
+  int max_connections = 1024;
+  int max_connections_per_peer = 128;
+  double self_check_s = 5.0;
   std::string port_file;
   std::string metrics_listen;  ///< empty: no metrics over HTTP
   std::string data = "lipofill-data";

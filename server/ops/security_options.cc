@@ -20,10 +20,14 @@ std::vector<Setting> settings_of(SecuritySettings& security) {
       {"client-certificates-file", "PATH", "JSON: who holds which client certificate; read again when it changes",
        &security.client_certificates_file},
       {"token-keys-file", "PATH",
-       "Public keys that bearer tokens (JWT, RS256 or ES256) are signed with, PEM or JWKS; read again when it changes",
+       "Public keys that bearer tokens (JWT: RS256, ES256, EdDSA) are signed with, PEM or JWKS; read again when it "
+       "changes",
        &security.token_keys_file},
       {"token-issuer", "TEXT", "What tokens must have as iss", &security.token_issuer},
       {"token-audience", "TEXT", "What tokens must have as aud, or in it", &security.token_audience},
+      {"revoked-file", "PATH",
+       "JSON: tokens and callers that are no longer good, whose calls also end; read again when it changes",
+       &security.revoked_file},
       {"token-clock-skew-s", "SECONDS", "How far the clocks of this machine and the tokens' issuer may be apart",
        &security.token_clock_skew_s, 0, 300},
       {"trust-unix-sockets", "",
@@ -33,13 +37,31 @@ std::vector<Setting> settings_of(SecuritySettings& security) {
        "Audit log, a line of JSON a call; default: audit.jsonl in the data directory where callers must say who they "
        "are, else none",
        &security.audit_file},
+      {"audit-key-file", "PATH",
+       "PEM, a private key: signs the anchor beside the audit log, which shows that its end was cut off",
+       &security.audit_key_file},
       {"audit-rotate-mb", "MB", "Size at which the audit log goes on in a new file; nothing is ever deleted",
        &security.audit_rotate_mb, 1, 1e6},
   };
 }
 
-int print_audit_verification(const std::vector<std::string>& files) {
-  const auto summary = verify_audit(files);
+namespace {
+
+absl::StatusOr<std::optional<AuditHead>> read_anchor_of(const std::string& log, const std::string& key_file) {
+  const std::string path = AuditAnchor::path_of(log);
+  if (key_file.empty()) return read_anchor(path, nullptr);
+  const auto key = AnchorKey::open_to_verify(key_file);
+  if (!key.ok()) return key.status();
+  auto anchor = read_anchor(path, &*key);
+  if (anchor.ok() && !*anchor) return absl::DataLossError(path + ", which audit-key-file signs, is not there");
+  return anchor;
+}
+
+}  // namespace
+
+int print_audit_verification(const std::vector<std::string>& files, const std::string& key_file) {
+  const auto anchor = read_anchor_of(files.back(), key_file);
+  const auto summary = anchor.ok() ? verify_audit(files, *anchor) : anchor.status();
   if (!summary.ok()) {
     std::cerr << "lipofilld: " << summary.status().message() << "\n";
     return 1;
@@ -49,6 +71,12 @@ int print_audit_verification(const std::vector<std::string>& files) {
   if (summary->torn_lines > 0) std::cout << summary->torn_lines << " were cut short as they were written\n";
   std::cout << "the last is line " << summary->head.number << ", hash " << summary->head.hash
             << ": compare it with the daemon's log\n";
+  if (*anchor) {
+    std::cout << "the anchor has line " << (*anchor)->number << ", which is there"
+              << (key_file.empty() ? "; whether it was signed was not asked" : ", and is signed") << "\n";
+  } else {
+    std::cout << "there is no anchor beside it: whether its end was cut off cannot be told\n";
+  }
   return 0;
 }
 

@@ -74,7 +74,8 @@ class AuditLog::File {
   const std::string path_;
 };
 
-absl::StatusOr<std::unique_ptr<AuditLog>> AuditLog::open(const std::string& path, uint64_t rotate_bytes) {
+absl::StatusOr<std::unique_ptr<AuditLog>> AuditLog::open(const std::string& path, uint64_t rotate_bytes,
+                                                         std::shared_ptr<const AnchorKey> key) {
   std::unique_ptr<AuditLog> log(new AuditLog(path, rotate_bytes));
   auto file = File::open(path);
   if (!file.ok()) return file.status();
@@ -83,13 +84,20 @@ absl::StatusOr<std::unique_ptr<AuditLog>> AuditLog::open(const std::string& path
   if (!tail.ok()) return tail.status();
   log->head_ = tail->head;
   log->is_torn_ = tail->is_torn;
+  // What a former run wrote and did not flush is, before it is anchored.
+  if (auto flushed = log->file_->flush(); !flushed.ok()) return flushed;
+  auto anchor = AuditAnchor::open(path, log->head_, std::move(key));
+  if (!anchor.ok()) return anchor.status();
+  log->anchor_ = *std::move(anchor);
   spdlog::info("the audit log {} goes on after line {}, hash {}", path, log->head_.number, log->head_.hash);
   return log;
 }
 
 AuditLog::~AuditLog() {
-  const absl::Status flushed = file_ != nullptr ? file_->flush() : absl::OkStatus();
-  if (!flushed.ok()) spdlog::error("{}", std::string(flushed.message()));
+  if (anchor_ == nullptr) return;  // it was not opened
+  absl::Status kept = file_->flush();
+  if (kept.ok()) kept = anchor_->note(head_);
+  if (!kept.ok()) spdlog::error("{}", std::string(kept.message()));
   spdlog::info("the audit log {} ends with line {}, hash {}", path_, head_.number, head_.hash);
 }
 
@@ -98,8 +106,10 @@ absl::Status AuditLog::append(const AuditEntry& entry) {
 }
 
 absl::Status AuditLog::append_durably(const AuditEntry& entry) {
-  const auto file = write(entry);
-  return file.ok() ? (*file)->flush() : file.status();
+  const auto written = write(entry);
+  if (!written.ok()) return written.status();
+  if (auto flushed = written->file->flush(); !flushed.ok()) return flushed;
+  return anchor_->note(written->head);
 }
 
 AuditHead AuditLog::head() const {
@@ -107,7 +117,7 @@ AuditHead AuditLog::head() const {
   return head_;
 }
 
-absl::StatusOr<std::shared_ptr<AuditLog::File>> AuditLog::write(const AuditEntry& entry) {
+absl::StatusOr<AuditLog::Written> AuditLog::write(const AuditEntry& entry) {
   const std::lock_guard lock(mutex_);
   if (file_->size >= rotate_bytes_) {
     if (auto rotated = rotate(); !rotated.ok()) return rotated;
@@ -118,7 +128,7 @@ absl::StatusOr<std::shared_ptr<AuditLog::File>> AuditLog::write(const AuditEntry
   if (written == before.size() + line.size() + 1) {
     head_ = {head_.number + 1, hash_of_line(line)};
     is_torn_ = false;
-    return file_;
+    return Written{file_, head_};
   }
   // The part that was written stays, and the next line follows it.
   const absl::Status error = cannot("write", path_);
@@ -133,6 +143,7 @@ absl::StatusOr<std::shared_ptr<AuditLog::File>> AuditLog::write(const AuditEntry
 
 absl::Status AuditLog::rotate() {
   if (auto flushed = file_->flush(); !flushed.ok()) return flushed;
+  if (auto noted = anchor_->note(head_); !noted.ok()) return noted;
   const std::string kept = absl::StrCat(path_, absl::StrFormat(".%012d", head_.number));
   const bool is_kept = ::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, kept.c_str(), RENAME_NOREPLACE) == 0;
   // The file is missing if it was renamed before and there was no room for a new one then.

@@ -6,21 +6,25 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "server/security/audit_anchor.h"
 #include "server/security/audit_line.h"
 
 namespace lipofill::server {
 
 /// Records who did what to which pseudonymous id, and how it ended: a JSON object a line, each with
 /// the hash of the line before, so that a line that was changed, taken out or put in is found
-/// (verify_audit). Lines are only ever added (O_APPEND). A file that has grown to its size is
-/// renamed to "{file}.{number of its last line}" and stays: nothing is ever deleted, that is for
-/// whoever archives it. Thread-safe. Checked by tests/unit/server/security/audit_log_test.cc and
-/// tests/integration/security/audit_test.cc.
+/// (verify_audit). A file beside it, its anchor, has the last durable line: a log that was cut off
+/// before that is noticed at the next start (AuditAnchor). Lines are only ever added (O_APPEND). A
+/// file that has grown to its size is renamed to "{file}.{number of its last line}" and stays:
+/// nothing is ever deleted, that is for whoever archives it. Thread-safe. Checked by
+/// tests/unit/server/security/audit_log_test.cc and tests/integration/security/audit_test.cc.
 class AuditLog {
  public:
   /// Goes on after the last line there is, also one that a loss of power cut short.
-  /// FAILED_PRECONDITION when the file cannot be written, or another daemon writes it.
-  static absl::StatusOr<std::unique_ptr<AuditLog>> open(const std::string& path, uint64_t rotate_bytes);
+  /// FAILED_PRECONDITION when the file cannot be written, or another daemon writes it; DATA_LOSS
+  /// when its end was cut off. `key` signs the anchor; nullptr: nothing does.
+  static absl::StatusOr<std::unique_ptr<AuditLog>> open(const std::string& path, uint64_t rotate_bytes,
+                                                        std::shared_ptr<const AnchorKey> key = nullptr);
   ~AuditLog();
   AuditLog(const AuditLog&) = delete;
   AuditLog& operator=(const AuditLog&) = delete;
@@ -36,13 +40,19 @@ class AuditLog {
  private:
   class File;
   AuditLog(std::string path, uint64_t rotate_bytes) : path_(std::move(path)), rotate_bytes_(rotate_bytes) {}
-  absl::StatusOr<std::shared_ptr<File>> write(const AuditEntry& entry);
+  /// A line that was written, and the file that has it.
+  struct Written {
+    std::shared_ptr<File> file;
+    AuditHead head;
+  };
+  absl::StatusOr<Written> write(const AuditEntry& entry);
   absl::Status rotate();
 
   const std::string path_;
   const uint64_t rotate_bytes_;
   mutable std::mutex mutex_;
   std::shared_ptr<File> file_;
+  std::unique_ptr<AuditAnchor> anchor_;
   AuditHead head_;
   bool is_torn_ = false;  ///< the file ends within a line
 };
@@ -59,7 +69,9 @@ struct AuditSummary {
 /// before. DATA_LOSS naming the first that does not, or when no line is one of an audit log;
 /// INVALID_ARGUMENT for a file that cannot be read. That lines are missing at the end shows only
 /// against a head that was kept elsewhere: the daemon logs it when it starts, at each new file and
-/// when it stops.
-absl::StatusOr<AuditSummary> verify_audit(const std::vector<std::string>& files);
+/// when it stops. Where an anchor is given, the line that it has must be there: DATA_LOSS for a log
+/// that ends before it or has another in its place.
+absl::StatusOr<AuditSummary> verify_audit(const std::vector<std::string>& files,
+                                          const std::optional<AuditHead>& anchor = std::nullopt);
 
 }  // namespace lipofill::server

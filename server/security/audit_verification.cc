@@ -9,6 +9,8 @@ namespace {
 /// Follows the chain through one line after the other.
 class AuditReader {
  public:
+  explicit AuditReader(const std::optional<AuditHead>& anchor) : anchor_(anchor) {}
+
   absl::Status read(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) return absl::InvalidArgumentError(absl::StrCat(path, " cannot be read"));
@@ -24,6 +26,13 @@ class AuditReader {
   }
 
   const AuditSummary& summary() const { return summary_; }
+
+  /// Whether the line that the anchor has was among those read.
+  absl::Status check_anchored() const {
+    if (!anchor_ || has_anchored_ || anchor_->number == 0) return absl::OkStatus();
+    return absl::DataLossError(absl::StrCat("the last line is number ", summary_.head.number,
+                                            ", the anchor has number ", anchor_->number, ": the end was cut off"));
+  }
 
  private:
   absl::Status take(const std::string& line) {
@@ -42,19 +51,28 @@ class AuditReader {
     }
     if (is_whole) summary_.head.number = told.number;
     summary_.head.hash = hash_of_line(line);
+    if (anchor_ && is_whole && told.number == anchor_->number) {
+      has_anchored_ = summary_.head.hash == anchor_->hash;
+      if (!has_anchored_) {
+        return absl::DataLossError(absl::StrCat("is not the line that the anchor has, number ", told.number));
+      }
+    }
     has_begun_ = true;
     ++summary_.lines;
     return absl::OkStatus();
   }
 
+  const std::optional<AuditHead> anchor_;
   AuditSummary summary_;
   bool has_begun_ = false;
+  bool has_anchored_ = false;
 };
 
 }  // namespace
 
-absl::StatusOr<AuditSummary> verify_audit(const std::vector<std::string>& files) {
-  AuditReader reader;
+absl::StatusOr<AuditSummary> verify_audit(const std::vector<std::string>& files,
+                                          const std::optional<AuditHead>& anchor) {
+  AuditReader reader(anchor);
   for (const std::string& file : files) {
     if (auto read = reader.read(file); !read.ok()) return read;
   }
@@ -62,6 +80,7 @@ absl::StatusOr<AuditSummary> verify_audit(const std::vector<std::string>& files)
   if (summary.lines > 0 && summary.torn_lines == summary.lines) {
     return absl::DataLossError("there is no line of an audit log in it");
   }
+  if (auto anchored = reader.check_anchored(); !anchored.ok()) return anchored;
   return summary;
 }
 

@@ -32,6 +32,11 @@ absl::StatusOr<std::unique_ptr<Authenticator>> Authenticator::open(const Securit
     note("client-certificates-file", certificates.status(), violations);
     if (certificates.ok()) self->certificates_ = *std::move(certificates);
   }
+  if (!settings.revoked_file.empty()) {
+    auto revoked = WatchedFile<RevocationList>::open(settings.revoked_file, RevocationList::parse);
+    note("revoked-file", revoked.status(), violations);
+    if (revoked.ok()) self->revoked_ = *std::move(revoked);
+  }
   if (!violations.empty()) return violations.to_status();
   return self;
 }
@@ -42,6 +47,15 @@ absl::StatusOr<Principal> Authenticator::identify(const Credentials& credentials
   const Principal* holder = map != nullptr && credentials.has_certificate
                                 ? map->find(credentials.common_names, credentials.alternative_names)
                                 : nullptr;
+  auto principal = identify_any(credentials, holder);
+  const auto revoked = revocations();
+  if (revoked == nullptr || !principal.ok()) return principal;
+  // A machine whose certificate was revoked speaks for nobody either.
+  if (revoked->has(*principal) || (holder != nullptr && revoked->has(*holder))) return credentials_revoked();
+  return principal;
+}
+
+absl::StatusOr<Principal> Authenticator::identify_any(const Credentials& credentials, const Principal* holder) const {
   if (tokens_ != nullptr && !credentials.authorization.empty()) return identify_by_token(credentials, holder);
   if (holder != nullptr) return *holder;
   if (credentials.is_unix_socket && trusts_unix_sockets_) return Principal{};

@@ -6,6 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "server/security/certificate_map.h"
+#include "server/security/revocation_list.h"
 #include "server/security/security_settings.h"
 #include "server/security/token_verifier.h"
 
@@ -32,17 +33,23 @@ class Authenticator {
   /// True when callers must say who they are.
   bool asks() const { return tokens_ != nullptr || certificates_ != nullptr; }
 
+  /// Who is revoked as of now; nullptr where no list is set up.
+  std::shared_ptr<const RevocationList> revocations() const { return revoked_ != nullptr ? revoked_->get() : nullptr; }
+
   /// Finds who calls. UNAUTHENTICATED with a reason: NO_CREDENTIALS, TOKEN_...,
-  /// CERTIFICATE_UNKNOWN, CREDENTIALS_DISAGREE for a token of another tenant than its certificate.
+  /// CERTIFICATE_UNKNOWN, CREDENTIALS_REVOKED, CREDENTIALS_DISAGREE for a token of another tenant
+  /// than its certificate.
   absl::StatusOr<Principal> identify(const Credentials& credentials) const;
 
  private:
   Authenticator() = default;
+  absl::StatusOr<Principal> identify_any(const Credentials& credentials, const Principal* holder) const;
   absl::StatusOr<Principal> identify_by_token(const Credentials& credentials, const Principal* holder) const;
 
   bool trusts_unix_sockets_ = false;
   std::unique_ptr<TokenVerifier> tokens_;
   std::unique_ptr<WatchedFile<CertificateMap>> certificates_;
+  std::unique_ptr<WatchedFile<RevocationList>> revoked_;
 };
 
 }  // namespace lipofill::server

@@ -55,6 +55,7 @@ absl::Status check_times(const Json& claims, const ClaimRules& rules, TimePoint 
   for (const char* name : {"nbf", "iat"}) {
     const auto from = read_time(claims, name);
     if (!from.ok()) return from.status();
+    principal.issued = *from;  // iat, the last, is what stays
     if (from->has_value() && **from > now + rules.clock_skew) {
       return unauthenticated("TOKEN_NOT_YET_VALID", absl::StrCat("the token's claim ", name, " is in the future"));
     }
@@ -105,6 +106,10 @@ absl::StatusOr<Principal> read_claims(const Json& claims, const ClaimRules& rule
   const Json* subject = find(claims, "sub");
   if (!is_text(subject, kMostSubject)) return bad_claim(absl::StrCat("sub must have 1 to ", kMostSubject, " bytes"));
   principal.subject = subject->get<std::string>();
+  if (const Json* id = find(claims, "jti"); id != nullptr) {
+    if (!is_text(id, kMostSubject)) return bad_claim(absl::StrCat("jti must have 1 to ", kMostSubject, " bytes"));
+    principal.token_id = id->get<std::string>();
+  }
   if (auto rights = read_rights(claims, principal); !rights.ok()) return bad_claim(std::string(rights.message()));
   return principal;
 }

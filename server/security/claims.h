@@ -14,8 +14,8 @@ struct ClaimRules {
 };
 
 /// Returns the person of whom a token speaks. Claims: iss and aud as the rules have them (aud a
-/// text or a list), exp, nbf and iat where present, sub (1 to 256 bytes), tenant, roles (a list;
-/// the highest counts), and where it is limited to some patients `patients`, a list of ids.
+/// text or a list), exp, nbf, iat and jti where present, sub (1 to 256 bytes), tenant, roles (a
+/// list; the highest counts), and where it is limited to some patients `patients`, a list of ids.
 /// UNAUTHENTICATED with a reason for each way to be wrong. Checked by
 /// tests/unit/server/security/claims_test.cc.
 absl::StatusOr<Principal> read_claims(const nlohmann::json& claims, const ClaimRules& rules,

@@ -33,6 +33,8 @@ struct Principal {
   Role role = Role::kAdmin;
   Scope scope;
   std::optional<Clock::time_point> expires = {};  ///< the token ends then, the clock's tolerance included
+  std::optional<Clock::time_point> issued = {};   ///< the token was issued then, where it says so
+  std::string token_id = {};                      ///< "jti" of the token; empty without one
 
   bool has_expired(Clock::time_point now = Clock::now()) const { return expires && now >= *expires; }
 };

@@ -22,4 +22,9 @@ inline absl::Status token_expired() {
   return unauthenticated("TOKEN_EXPIRED", "the token has expired; call again with a new one");
 }
 
+/// Refuses, or ends, a call of somebody whose credentials were revoked.
+inline absl::Status credentials_revoked() {
+  return unauthenticated("CREDENTIALS_REVOKED", "the credentials were revoked; ask their issuer for new ones");
+}
+
 }  // namespace lipofill::server

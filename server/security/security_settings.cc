@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
+#include "server/security/anchor_key.h"
 #include "server/security/authenticator.h"
 #include "server/security/tls_files.h"
 
@@ -24,6 +25,10 @@ void check_together(const SecuritySettings& settings, FieldViolations& violation
     need(settings.has_authentication(), "client-certificates-file", "nobody is known by their client certificate",
          violations);
   }
+  if (!settings.revoked_file.empty()) {
+    need(settings.has_authentication(), "token-keys-file", "revoked-file is of callers who say who they are",
+         violations);
+  }
   if (settings.has_tokens()) {
     need(!settings.token_issuer.empty(), "token-issuer", "token-keys-file needs it", violations);
     need(!settings.token_audience.empty(), "token-audience", "token-keys-file needs it", violations);
@@ -42,6 +47,10 @@ absl::Status check_security(const SecuritySettings& settings) {
   check_together(settings, violations);
   violations.absorb("", check_tls_files(settings));
   violations.absorb("", Authenticator::open(settings).status());
+  if (!settings.audit_key_file.empty()) {
+    const auto key = AnchorKey::open(settings.audit_key_file);
+    if (!key.ok()) violations.add("audit-key-file", std::string(key.status().message()));
+  }
   return violations.to_status();
 }
 

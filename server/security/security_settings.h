@@ -18,9 +18,11 @@ struct SecuritySettings {
   std::string token_keys_file;
   std::string token_issuer;
   std::string token_audience;
+  std::string revoked_file;
   int token_clock_skew_s = 30;
   bool trust_unix_sockets = false;
   std::string audit_file;  ///< where it is empty, audit_file_in() says
+  std::string audit_key_file;
   uint64_t audit_rotate_mb = 64;
 
   bool has_tls() const { return !tls_certificate_file.empty(); }

@@ -40,6 +40,10 @@ absl::Status unusable(const std::string& which, const std::string& why) {
   return absl::InvalidArgumentError(absl::StrCat(which, " ", why));
 }
 
+bool is_algorithm(const std::string& name) {
+  return name == "RS256" || name == "ES256" || name == "EdDSA";
+}
+
 bool is_on_p256(EVP_PKEY* key) {
   char group[32] = "";
   size_t size = 0;
@@ -52,7 +56,8 @@ absl::StatusOr<std::string> algorithm_for(EVP_PKEY* key, const std::string& whic
     return unusable(which, absl::StrCat("has ", EVP_PKEY_get_bits(key), " bits, must have at least ", kLeastRsaBits));
   }
   if (EVP_PKEY_is_a(key, "EC") == 1 && is_on_p256(key)) return "ES256";
-  return unusable(which, "is neither an RSA key nor an elliptic one on P-256");
+  if (EVP_PKEY_is_a(key, "ED25519") == 1) return "EdDSA";
+  return unusable(which, "is neither an RSA key nor an elliptic one on P-256 or Ed25519");
 }
 
 std::string to_pem(EVP_PKEY* key) {
@@ -131,11 +136,25 @@ Key make_elliptic_key(const Json& jwk) {
   return make_key("EC", builder.get());
 }
 
+Key make_edwards_key(const Json& jwk) {
+  constexpr size_t kPublicKey = 32;
+  const std::string x = bytes_of(jwk, "x");
+  if (text_of(jwk, "crv") != "Ed25519" || x.size() != kPublicKey) return nullptr;
+  return Key(EVP_PKEY_new_raw_public_key(EVP_PKEY_ED25519, nullptr, reinterpret_cast<const unsigned char*>(x.data()),
+                                         x.size()));
+}
+
+Key make_key_of(const Json& jwk) {
+  const std::string type = text_of(jwk, "kty");
+  if (type == "RSA") return make_rsa_key(jwk);
+  return type == "OKP" ? make_edwards_key(jwk) : make_elliptic_key(jwk);
+}
+
 /// A set may hold keys for other uses, which are left out.
 bool is_for_signatures(const Json& jwk) {
   const std::string use = text_of(jwk, "use");
   const std::string algorithm = text_of(jwk, "alg");
-  return (use.empty() || use == "sig") && (algorithm.empty() || algorithm == "RS256" || algorithm == "ES256");
+  return (use.empty() || use == "sig") && (algorithm.empty() || is_algorithm(algorithm));
 }
 
 absl::StatusOr<TokenKeys> parse_key_set(const std::string& text) {
@@ -148,11 +167,11 @@ absl::StatusOr<TokenKeys> parse_key_set(const std::string& text) {
     if (!jwk.is_object() || !is_for_signatures(jwk)) continue;
     const std::string which = absl::StrCat("key \"", absl::CHexEscape(text_of(jwk, "kid")), "\"");
     if (jwk.contains("d") || jwk.contains("k")) return unusable(which, "is a secret one and does not belong here");
-    const Key key = text_of(jwk, "kty") == "RSA" ? make_rsa_key(jwk) : make_elliptic_key(jwk);
-    if (key == nullptr) return unusable(which, "cannot be read as an RSA key or an elliptic one on P-256");
+    const Key key = make_key_of(jwk);
+    if (key == nullptr) return unusable(which, "cannot be read as an RSA key or an elliptic one on P-256 or Ed25519");
     if (auto added = add(key.get(), text_of(jwk, "kid"), which, keys); !added.ok()) return added;
   }
-  if (keys.empty()) return absl::InvalidArgumentError("the JSON Web Key Set has no key for RS256 or ES256");
+  if (keys.empty()) return absl::InvalidArgumentError("the JSON Web Key Set has no key for RS256, ES256 or EdDSA");
   return keys;
 }
 

@@ -23,7 +23,7 @@ absl::StatusOr<TokenParts> take_token_apart(const std::string& token);
 
 /// True when the token was signed by the owner of the key, with the key's own algorithm, whatever
 /// the token says of algorithms. It takes only tokens that could be taken apart. cpp-jwt is called
-/// here and nowhere else.
+/// here and nowhere else; EdDSA, which it has not, is OpenSSL's.
 bool is_signed_by(const std::string& token, const TokenKey& key);
 
 }  // namespace lipofill::server

@@ -12,7 +12,8 @@ Then come server on core and proto, and client on proto alone; core sees neither
     <- main.cc and grpc_server, which registers the services
     security <- ops <- backend
 
-In the server the services do not see each other. wire turns messages into what core takes, and
+In the server the services do not see each other, and the door (connections, before gRPC has them)
+sees no other folder. wire turns messages into what core takes, and
 back; gRPC is for entry and above, of it wire knows the status alone. Headers that only some may
 include are RESERVED. It prints file:line for every include that goes another way.
 """
@@ -44,7 +45,8 @@ ALLOWED = {
     "core/export": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics", "core/simulation", "core/export"},
     "server/store": {"core/base", "server/store"},
     "server/security": {"core/base", "server/store", "server/security"},
-    "server/ops": {"core/base", "server/security", "server/ops"},
+    "server/door": {"core/base", "server/door"},
+    "server/ops": {"core/base", "server/door", "server/security", "server/ops"},
     "server/sessions": {"core", "server/store", "server/sessions"},
     "server/wire": RECORDS
     | {"core/base", "core/geometry", "core/anatomy", "core/model", "core/plan", "core/simulation"}
@@ -52,7 +54,7 @@ ALLOWED = {
     "server/backend": BELOW_BACKEND
     | {"core/base", "core/geometry", "core/model", "core/simulation"}
     | {"proto", "server/backend"},
-    "server/entry": BELOW_ENTRY | {"core/base"} | {"proto", "grpc", "server/entry"},
+    "server/entry": BELOW_ENTRY | {"core/base", "server/door"} | {"proto", "grpc", "server/entry"},
     "server/patients": BELOW_SERVICES
     | {"core/base", "core/geometry", "core/model"}
     | {"proto", "grpc", "server/patients"},

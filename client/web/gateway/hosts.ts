@@ -58,7 +58,7 @@ function isSameSite(origin: string, host: string): boolean {
   }
 }
 
-/** What browsers say of a request that another site's page made, unless somebody followed a link. */
+/** What browsers say of a request of another site's page, unless somebody followed a link. */
 function isForeign(request: IncomingMessage): boolean {
   const site = request.headers["sec-fetch-site"];
   const isOwn = site === undefined || site === "same-origin" || site === "none";

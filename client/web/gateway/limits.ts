@@ -23,7 +23,7 @@ export const serverOptions: ServerOptions = {
   connectionsCheckingInterval: lookEveryMs,
 };
 
-/** Connections at once: well below what files a process may usually open, also towards the daemon. */
+/** Connections at once: well below the files a process may usually open, also to the daemon. */
 export const mostConnections = 512;
 
 /** What a request's body may come to: its length where it says so, else the most that is taken. */

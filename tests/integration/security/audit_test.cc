@@ -132,5 +132,29 @@ TEST_F(FullAuditTest, NothingIsChangedWithoutALine) {
   EXPECT_THAT(daemon_->log(), HasSubstr("the audit log cannot be written"));
 }
 
+TEST_F(AuditTest, ALogWhoseEndIsCutOffIsNoticedAtTheNextStart) {
+  const Caller planner = caller("ward", "planner");
+  for (const char* id : {"ward-a", "ward-b", "ward-c"}) {
+    const std::string request = R"({"patientId":")" + std::string(id) + "\"}";
+    ASSERT_TRUE(planner.call_json("PatientService/CreatePatient", request).status.ok());
+  }
+  daemon_->kill_hard();
+  const std::string whole = read_whole_file(audit_file());
+  std::string output;
+  EXPECT_EQ(run_daemon_to_end({"--verify-audit", audit_file()}, output), 0) << output;
+  EXPECT_THAT(output, HasSubstr("which is there"));
+  const size_t cut = whole.rfind("BEGUN");
+  std::ofstream(audit_file()) << whole.substr(0, whole.rfind('\n', cut) + 1);
+  EXPECT_EQ(run_daemon_to_end({"--verify-audit", audit_file()}, output), 1);
+  EXPECT_THAT(output, HasSubstr("the end was cut off"));
+  std::vector<std::string> arguments = arguments_;
+  arguments.insert(arguments.end(), {"--data", directory_.file("data"), "--listen", "127.0.0.1:0"});
+  EXPECT_EQ(run_daemon_to_end(arguments, output), 1);
+  EXPECT_THAT(output, HasSubstr("its end was cut off"));
+  std::ofstream(audit_file()) << whole;
+  start({});
+  EXPECT_TRUE(caller("ward", "planner").call_json("PatientService/ListPatients", "{}").status.ok());
+}
+
 }  // namespace
 }  // namespace lipofill::testing

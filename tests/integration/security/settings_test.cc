@@ -49,7 +49,15 @@ TEST_F(SecuritySettingsTest, GoodOnesAreGood) {
 
 TEST_F(SecuritySettingsTest, TheNetworkIsServedEncryptedAndToWhoIsKnown) {
   const std::vector<std::string> anywhere = {"--listen", "0.0.0.0:0"};
-  EXPECT_EQ(complaint(both(both(tls(), tokens()), anywhere)), "");
+  const std::vector<std::string> with_tokens = both(both(tls(), tokens()), anywhere);
+  EXPECT_THAT(complaint(with_tokens), HasSubstr("strangers can exhaust the daemon")) << "without a front";
+  EXPECT_EQ(complaint(both(with_tokens, {"--behind-proxy"})), "");
+  EXPECT_EQ(complaint(both(with_tokens, {"--insecure-listen-anywhere"})), "");
+  const std::string holders = std::string(LIPOFILL_DEPLOY) + "/client_certificates.json";
+  const std::vector<std::string> with_certificates =
+      both(both(tls(), anywhere), {"--tls-client-ca-file", file("a/ca.pem"), "--client-certificates-file", holders});
+  EXPECT_EQ(complaint(with_certificates), "") << "strangers get no further than the handshake";
+  EXPECT_THAT(complaint(both(with_certificates, {"--tls-client-certificate-optional"})), HasSubstr("strangers"));
   EXPECT_THAT(complaint(both(tls(), anywhere)), HasSubstr("others on the network reach"));
   EXPECT_THAT(complaint(both(tokens(), anywhere)), HasSubstr("others on the network reach"));
 }

@@ -58,6 +58,14 @@ SigningKey SigningKey::p384() {
   return SigningKey(EVP_EC_gen("P-384"));
 }
 
+SigningKey SigningKey::ed25519() {
+  return SigningKey(EVP_PKEY_Q_keygen(nullptr, nullptr, "ED25519"));
+}
+
+bool SigningKey::is_edwards() const {
+  return EVP_PKEY_is_a(key_.get(), "ED25519") == 1;
+}
+
 bool SigningKey::is_rsa() const {
   return EVP_PKEY_is_a(key_.get(), "RSA") == 1;
 }
@@ -83,6 +91,12 @@ std::string SigningKey::number(const char* name) const {
 }
 
 Json SigningKey::jwk(const std::string& id) const {
+  if (is_edwards()) {
+    std::string x(32, '\0');
+    size_t size = x.size();
+    EVP_PKEY_get_raw_public_key(key_.get(), reinterpret_cast<unsigned char*>(x.data()), &size);
+    return {{"kty", "OKP"}, {"crv", "Ed25519"}, {"kid", id}, {"x", base64url(x)}};
+  }
   if (is_rsa()) {
     return {{"kty", "RSA"}, {"kid", id}, {"n", number(OSSL_PKEY_PARAM_RSA_N)}, {"e", number(OSSL_PKEY_PARAM_RSA_E)}};
   }
@@ -98,17 +112,17 @@ std::string SigningKey::sign(const std::string& text) const {
   EVP_MD_CTX* context = EVP_MD_CTX_new();
   const auto* data = reinterpret_cast<const unsigned char*>(text.data());
   size_t size = 0;
-  EVP_DigestSignInit(context, nullptr, EVP_sha256(), nullptr, key_.get());
+  EVP_DigestSignInit(context, nullptr, is_edwards() ? nullptr : EVP_sha256(), nullptr, key_.get());
   EVP_DigestSign(context, nullptr, &size, data, text.size());
   std::string signature(size, '\0');
   EVP_DigestSign(context, reinterpret_cast<unsigned char*>(signature.data()), &size, data, text.size());
   EVP_MD_CTX_free(context);
   signature.resize(size);
-  return is_rsa() ? signature : to_plain_signature(signature);
+  return is_rsa() || is_edwards() ? signature : to_plain_signature(signature);
 }
 
 std::string SigningKey::token(const Json& claims, const std::string& id) const {
-  Json header = {{"alg", is_rsa() ? "RS256" : "ES256"}, {"typ", "JWT"}};
+  Json header = {{"alg", is_rsa() ? "RS256" : is_edwards() ? "EdDSA" : "ES256"}, {"typ", "JWT"}};
   if (!id.empty()) header["kid"] = id;
   return token_with_header(claims, header);
 }

@@ -16,6 +16,7 @@ class SigningKey {
   static SigningKey rsa(unsigned int bits = 2048);
   static SigningKey p256();
   static SigningKey p384();
+  static SigningKey ed25519();
 
   std::string public_pem() const;
   std::string private_pem() const;
@@ -30,6 +31,7 @@ class SigningKey {
  private:
   explicit SigningKey(evp_pkey_st* key);
   bool is_rsa() const;
+  bool is_edwards() const;
   std::string number(const char* name) const;
 
   std::shared_ptr<evp_pkey_st> key_;

@@ -44,6 +44,22 @@ TEST(TokenKeys, AreReadFromAKeySet) {
   EXPECT_EQ((*keys)[1].pem, p256.public_pem());
 }
 
+TEST(TokenKeys, MayBeOfEdwards) {
+  const SigningKey key = SigningKey::ed25519();
+  const auto pem = parse_token_keys(key.public_pem());
+  ASSERT_TRUE(pem.ok()) << pem.status();
+  EXPECT_EQ((*pem)[0].algorithm, "EdDSA");
+  const auto set = parse_token_keys(Json{{"keys", {key.jwk("e")}}}.dump());
+  ASSERT_TRUE(set.ok()) << set.status();
+  EXPECT_EQ((*set)[0].pem, key.public_pem());
+  Json other_curve = key.jwk("o");
+  other_curve["crv"] = "Ed448";
+  EXPECT_THAT(refusal(Json{{"keys", {other_curve}}}.dump()), HasSubstr("key \"o\" cannot be read"));
+  Json short_key = key.jwk("s");
+  short_key["x"] = "AAAA";
+  EXPECT_THAT(refusal(Json{{"keys", {short_key}}}.dump()), HasSubstr("key \"s\" cannot be read"));
+}
+
 TEST(TokenKeys, AreNotSecretNotWeakAndNotOnOtherCurves) {
   EXPECT_THAT(refusal(SigningKey::rsa().private_pem()), HasSubstr("private key"));
   EXPECT_THAT(refusal(SigningKey::rsa(1024).public_pem()), HasSubstr("has 1024 bits, must have at least 2048"));

@@ -149,5 +149,21 @@ TEST_F(TokenVerifierTest, TakesTheKeyThatATokenNamesAndFollowsTheFile) {
   EXPECT_EQ(reason(a.token(good_claims(), "../../etc/passwd")), "TOKEN_SIGNATURE");
 }
 
+TEST_F(TokenVerifierTest, EdDsaIsVerifiedAndNotTakenForAnother) {
+  const SigningKey key = SigningKey::ed25519();
+  const SigningKey p256 = SigningKey::p256();
+  trust(key.public_pem() + p256.public_pem());
+  const std::string token = key.token(good_claims());
+  EXPECT_EQ(reason(token), "");
+  EXPECT_EQ(reason(SigningKey::ed25519().token(good_claims())), "TOKEN_SIGNATURE") << "of a stranger";
+  EXPECT_EQ(reason(key.token_with_header(good_claims(), {{"alg", "ES256"}})), "TOKEN_SIGNATURE");
+  EXPECT_EQ(reason(p256.token_with_header(good_claims(), {{"alg", "EdDSA"}})), "TOKEN_SIGNATURE");
+  EXPECT_EQ(reason(key.token_with_header(good_claims(), {{"alg", "none"}})), "TOKEN_SIGNATURE");
+  std::vector<std::string> parts = absl::StrSplit(token, '.');
+  parts[1] = base64url(with("tenant", "clinic").dump());
+  EXPECT_EQ(reason(parts[0] + "." + parts[1] + "." + parts[2]), "TOKEN_SIGNATURE") << "a changed claim";
+  EXPECT_EQ(reason(parts[0] + "." + parts[1] + ".AAAA"), "TOKEN_SIGNATURE");
+}
+
 }  // namespace
 }  // namespace lipofill::server

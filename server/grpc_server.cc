@@ -119,6 +119,11 @@ absl::Status GrpcServer::listen(const std::vector<std::string>& addresses, bool 
   for (const std::string& text : addresses) {
     const auto address = parse_listen_address(text);
     if (!address.ok()) return address.status();
+    if (address->is_unix()) {
+      auto claim = SocketClaim::take(address->unix_path);
+      if (!claim.ok()) return claim.status();
+      claims_.push_back(*std::move(claim));
+    }
     auto sockets = address->is_unix() ? listen_on_path(address->unix_path) : listen_on(address->host, address->port);
     if (!sockets.ok()) return sockets.status();
     if (port_ == 0) port_ = sockets->front().port;

@@ -17,6 +17,7 @@
 #include "server/entry/call_gate.h"
 #include "server/frames/frame_service.h"
 #include "server/ops/periodic.h"
+#include "server/ops/socket_claim.h"
 #include "server/patients/operation_service.h"
 #include "server/patients/patient_service.h"
 #include "server/simulations/simulation_service.h"
@@ -40,7 +41,8 @@ class GrpcServer {
   /// @param guard      who may do what; outlives the server. TCP is served with TLS where it has
   ///                   that.
   /// @param bounds     the connections that may be open
-  /// UNAVAILABLE when one cannot be listened on, also when another program already does.
+  /// UNAVAILABLE when one cannot be listened on, also when another program already does;
+  /// FAILED_PRECONDITION for a UNIX socket on which somebody serves.
   static absl::StatusOr<std::unique_ptr<GrpcServer>> start(const std::vector<std::string>& addresses,
                                                            const ServiceGuard& guard, const DoorBounds& bounds,
                                                            Backend& backend);
@@ -72,6 +74,7 @@ class GrpcServer {
   /// Becomes ready when the last call has ended; calls that have not within `grace` are cancelled.
   std::future<void> end_calls(Seconds grace);
 
+  std::vector<SocketClaim> claims_;  ///< first: they outlast the server, which removes its sockets
   Backend& backend_;
   CallGate gate_;
   PatientService patients_;

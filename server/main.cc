@@ -12,8 +12,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "core/coupling/algebra_threads.h"
+#include "server/backend/abandoned_uploads.h"
 #include "server/backend/backend_metrics.h"
 #include "server/backend/parking.h"
+#include "server/backend/recovery_attendant.h"
 #include "server/backend/simulation_recovery.h"
 #include "server/grpc_server.h"
 #include "server/ops/connection_metrics.h"
@@ -26,22 +28,51 @@
 #include "server/ops/self_check.h"
 #include "server/ops/service_manager.h"
 #include "server/ops/signals.h"
+#include "server/sessions/identifiers.h"
 #include "server/store/backup.h"
 #include "server/store/data_directory.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/store_opening.h"
+#include "server/store/stray_files.h"
+#include "server/store/temporary_files.h"
+#include "server/store/verification.h"
 #include "spdlog/spdlog.h"
 
 namespace lipofill::server {
 namespace {
 
-/// Removes files that no record speaks of: what a run that did not end well left.
-void sweep_files(Store& store, const ScanFiles& scans, const CheckpointFiles& checkpoints) {
-  const int swept = scans.sweep([&store](const std::string& patient, const std::string& scan) {
-    return !absl::IsNotFound(store.get_scan(patient, scan).status());
-  }) + checkpoints.sweep([&store](const std::string& simulation, const std::string& checkpoint) {
-    return !absl::IsNotFound(store.get_checkpoint(simulation, checkpoint).status());
+/// The exit code of a backup, a restore or a verification that found damage.
+constexpr int kFoundDamage = 3;
+
+/// Tells of each damage.
+void tell(const std::vector<Damage>& damages) {
+  for (const Damage& damage : damages) spdlog::error("{} is damaged: {}", damage.name, damage.what);
+}
+
+/// Removes what the store recorded as temporary, and sets files aside that it knows nothing of.
+absl::Status tidy_files(Store& store, const ScanFiles& scans, const CheckpointFiles& checkpoints,
+                        const DataDirectory& data) {
+  const int swept = TemporaryFiles(store, data.path()).sweep();
+  if (swept > 0) spdlog::info("{} temporary files were removed", swept);
+  const auto strays = set_strays_aside(store, scans, checkpoints, data.path(), now_us());
+  if (!strays.ok()) return strays.status();
+  if (strays->files == 0) return absl::OkStatus();
+  spdlog::warn(
+      "{} files of which the database knows nothing were set aside, in {}. Nothing removes them: if they are missed, "
+      "put the database that knows them in its place",
+      strays->files, strays->place.string());
+  return absl::OkStatus();
+}
+
+/// To open a store takes some room, for which what is kept back serves too.
+absl::StatusOr<OpenedStore> open_store(const DataDirectory& data, const Options& options) {
+  absl::StatusOr<OpenedStore> opened = absl::UnknownError("");
+  SpaceReserve reserve(data.reserve(), options.space_reserve_mb * 1'000'000);
+  const absl::Status done = reserve.spend([&opened, &data] {
+    opened = open_store_to_serve(data);
+    return opened.status();
   });
-  if (swept > 0) spdlog::warn("{} files that are in no record were removed", swept);
+  if (!done.ok()) return done;
+  return opened;
 }
 
 /// The file is written beside and moved into place, so that a script never reads half a number.
@@ -68,6 +99,7 @@ BackendOptions backend_options(const Options& options) {
   backend.max_viewers = options.max_viewers;
   backend.checkpoints.interval_s = options.checkpoint_interval_s;
   backend.checkpoints.kept = options.checkpoints_kept;
+  backend.reserve_bytes = options.space_reserve_mb * 1'000'000;
   backend.checkpoints.most_bytes = options.checkpoint_space_mb * 1'000'000;
   return backend;
 }
@@ -141,22 +173,30 @@ absl::Status serve(const Options& options) {
   std::optional<DrainGuard> guard;  // first: it outlasts all that must end
   const auto data = DataDirectory::open(options.data);
   if (!data.ok()) return data.status();
-  const auto store = SqliteStore::open(data->database().string());
-  if (!store.ok()) return store.status();
+  const auto opened = open_store(*data, options);
+  if (!opened.ok()) return opened.status();
+  if (!opened->remark.empty()) spdlog::warn("{}", opened->remark);
+  Store& store = *opened->store;
   auto files = ScanFiles::open(data->scans());
   if (!files.ok()) return files.status();
   auto checkpoints = CheckpointFiles::open(data->checkpoints());
   if (!checkpoints.ok()) return checkpoints.status();
-  sweep_files(**store, *files, *checkpoints);
+  if (auto tidied = tidy_files(store, *files, *checkpoints, *data); !tidied.ok()) return tidied;
 
   const auto authenticator = Authenticator::open(options.security);
   if (!authenticator.ok()) return authenticator.status();
   const auto audit = open_audit_log(options);
   if (!audit.ok()) return audit.status();
   Metrics metrics;
-  Backend backend(backend_options(options), **store, *files, *checkpoints, metrics);
+  Backend backend(backend_options(options), store, *files, *checkpoints, metrics);
+  if (options.space_reserve_mb > 0 && !backend.reserve.fill()) {
+    spdlog::warn("there is no room for the reserve of {} MB: on a full disk nothing can be deleted",
+                 options.space_reserve_mb);
+  }
   if (auto back = bring_back_simulations(backend); !back.ok()) return back;
   const ParkingAttendant parking(backend, std::chrono::duration<double>(options.park_after_s));
+  const RecoveryAttendant recovery(backend);
+  const UploadAttendant uploads(backend, std::chrono::duration<double>(options.drop_uploads_after_s));
   const auto server =
       GrpcServer::start(options.listen, {options.security, **authenticator, audit->get(), options.reflection},
                         door_bounds(options), backend);
@@ -172,26 +212,57 @@ absl::Status serve(const Options& options) {
   return served;
 }
 
-/// Makes a backup or a restore in place of serving, with a line of progress a second.
-absl::Status copy_store(const Options& options) {
+/// Calls `tell` at most once a second.
+template <typename Tell>
+auto each_second(Tell tell) {
   using Clock = std::chrono::steady_clock;
-  Clock::time_point told = Clock::now();
-  const auto progress = [&told](const BackupReport& so_far) {
+  return [tell, told = Clock::now()](const auto& so_far) mutable {
     if (Clock::now() - told < std::chrono::seconds(1)) return;
     told = Clock::now();
-    spdlog::info("{} files, {} MB so far", so_far.files, so_far.bytes / 1'000'000);
+    tell(so_far);
   };
+}
+
+/// Makes a backup or a restore in place of serving, with a line of progress a second. Returns the
+/// exit code.
+absl::StatusOr<int> copy_store(const Options& options) {
+  const auto progress = each_second([](const BackupReport& so_far) {
+    spdlog::info("{} files, {} MB so far", so_far.files, so_far.bytes / 1'000'000);
+  });
   const bool is_backup = !options.backup_to.empty();
   const auto done = is_backup ? back_up_store(options.data, options.backup_to, progress)
                               : restore_store(options.restore_from, options.data, progress);
   if (!done.ok()) return done.status();
-  spdlog::info("{}: {} files, {} MB", is_backup ? "backed up to " + options.backup_to : "restored to " + options.data,
-               done->files, done->bytes / 1'000'000);
-  return absl::OkStatus();
+  tell(done->damages);
+  const std::string outcome =
+      done->damages.empty() ? "all checked and whole" : absl::StrCat("but ", done->damages.size(), " damaged before");
+  spdlog::info("{}: {} files, {} MB, {}",
+               is_backup ? "backed up to " + options.backup_to : "restored to " + options.data, done->files,
+               done->bytes / 1'000'000, outcome);
+  return done->damages.empty() ? 0 : kFoundDamage;
 }
 
-bool copies_store(const Options& options) {
-  return !options.backup_to.empty() || !options.restore_from.empty();
+/// Looks for damage in place of serving. Returns the exit code.
+absl::StatusOr<int> verify(const Options& options) {
+  const auto found = verify_store(options.data, each_second([](const Verification& so_far) {
+                                    spdlog::info("{} records, {} files, {} MB so far", so_far.records, so_far.files,
+                                                 so_far.bytes / 1'000'000);
+                                  }));
+  if (!found.ok()) return found.status();
+  tell(found->damages);
+  spdlog::info("looked at {} records and {} files, {} MB, in {}: {}", found->records, found->files,
+               found->bytes / 1'000'000, options.data,
+               found->is_whole() ? "all is what was written" : absl::StrCat(found->damages.size(), " are damaged"));
+  return found->is_whole() ? 0 : kFoundDamage;
+}
+
+/// Does what the options ask for. Returns the exit code.
+absl::StatusOr<int> run(const Options& options) {
+  if (options.verify) return verify(options);
+  if (!options.backup_to.empty() || !options.restore_from.empty()) return copy_store(options);
+  const absl::Status served = serve(options);
+  if (!served.ok()) return served;
+  return 0;
 }
 
 }  // namespace
@@ -206,9 +277,9 @@ int main(int argc, char** argv) {
   ::umask(S_IRWXG | S_IRWXO);  // all that it writes is of patients
   take_signals();
   try {
-    const absl::Status served = copies_store(*options) ? copy_store(*options) : serve(*options);
-    if (served.ok()) return 0;
-    spdlog::error("{}", std::string(served.message()));
+    const absl::StatusOr<int> done = run(*options);
+    if (done.ok()) return *done;
+    spdlog::error("{}", std::string(done.status().message()));
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
   }

@@ -47,6 +47,7 @@ absl::StatusOr<ExitCode> list(Application& application, const Options& options) 
   if (!all.ok()) return all.status();
   std::string text;
   for (const v1::Checkpoint& checkpoint : all->checkpoints()) text += checkpoint_line(checkpoint);
+  text += unreachable_lines(*all);
   return application.answer(*all, text);
 }
 

@@ -21,9 +21,18 @@ absl::StatusOr<Response> list_all(const Connection& connection,
     auto page = connection.call<Service>(method, request);
     if (!page.ok()) return page.status();
     items(all)->MergeFrom(*items(*page));
+    if constexpr (requires { page->unreachable(); }) all.mutable_unreachable()->MergeFrom(page->unreachable());
     request.set_page_token(page->next_page_token());
   } while (!request.page_token().empty());
   return all;
+}
+
+/// A line for each name of a list that is damaged and cannot be shown.
+template <typename Response>
+std::string unreachable_lines(const Response& response) {
+  std::string text;
+  for (const std::string& name : response.unreachable()) text += name + "  damaged, cannot be shown\n";
+  return text;
 }
 
 /// Returns "collection/id" when given either that or the id alone.

@@ -86,6 +86,7 @@ absl::StatusOr<ExitCode> list(Application& application, const Options& options) 
   if (!all.ok()) return all.status();
   std::string text;
   for (const v1::Model& model : all->models()) text += list_line(model);
+  text += unreachable_lines(*all);
   return application.answer(*all, text);
 }
 

@@ -63,6 +63,7 @@ absl::StatusOr<ExitCode> list(Application& application) {
   if (!all.ok()) return all.status();
   std::string text;
   for (const v1::Patient& patient : all->patients()) text += list_line(patient);
+  text += unreachable_lines(*all);
   return application.answer(*all, text);
 }
 

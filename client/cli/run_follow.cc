@@ -124,6 +124,7 @@ void Run::tell_preview() {
 void Run::show_progress() {
   if (!rows_.empty()) return progress_.show(progress_text(rows_.back()));
   const auto simulation = get_simulation(*connection_, simulation_.name());
+  if (simulation.ok() && simulation->has_recovery()) return progress_.show(simulation->reason());
   if (simulation.ok() && simulation->state() == v1::Simulation::QUEUED) {
     progress_.show(
         absl::StrCat("waits until others have ended, place ", simulation->queue_position(), " in the queue"));

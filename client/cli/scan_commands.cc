@@ -49,6 +49,7 @@ absl::StatusOr<ExitCode> list(Application& application, const Options& options) 
   if (!all.ok()) return all.status();
   std::string text;
   for (const v1::Scan& scan : all->scans()) text += list_line(scan);
+  text += unreachable_lines(*all);
   return application.answer(*all, text);
 }
 

@@ -72,6 +72,7 @@ absl::StatusOr<ExitCode> list(Application& application) {
   if (!all.ok()) return all.status();
   std::string text;
   for (const v1::Simulation& simulation : all->simulations()) text += list_line(simulation);
+  text += unreachable_lines(*all);
   return application.answer(*all, text);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "server/backend/awaited_simulations.h"
 #include "server/backend/result_keeper.h"
 #include "server/backend/size_limits.h"
 #include "server/ops/metrics.h"
@@ -17,7 +18,9 @@
 #include "server/sessions/worker_pool.h"
 #include "server/store/checkpoint_files.h"
 #include "server/store/scan_files.h"
+#include "server/store/space_reserve.h"
 #include "server/store/store.h"
+#include "server/store/temporary_files.h"
 
 namespace lipofill::server {
 
@@ -32,6 +35,7 @@ struct BackendOptions {
   double keepalive_timeout_s = 20.0;
   int max_viewers = 1000;
   CheckpointOptions checkpoints;
+  uint64_t reserve_bytes = 0;  ///< room that is kept back for deletions
 };
 
 /// Everything that the services share.
@@ -43,8 +47,10 @@ struct Backend {
         scan_files(scans),
         checkpoint_files(checkpoints),
         metrics(the_metrics),
+        temporary_files(the_store, scans.files().root().parent_path()),
+        reserve(scans.files().root().parent_path() / "reserve", options.reserve_bytes),
         sessions(options.sessions),
-        keeper(the_store, checkpoints, sessions, options.checkpoints, the_metrics),
+        keeper(the_store, checkpoints, temporary_files, sessions, options.checkpoints, the_metrics),
         workers(options.workers, static_cast<size_t>(options.max_running)) {}
 
   const BackendOptions options;
@@ -52,9 +58,13 @@ struct Backend {
   ScanFiles& scan_files;
   CheckpointFiles& checkpoint_files;
   Metrics& metrics;
+  TemporaryFiles temporary_files;
+  SpaceReserve reserve;
   std::atomic<bool> stopping = false;
-  /// This is held while a parked simulation is brought back or deleted: one at a time.
+  /// This is held while a simulation that is not in memory is brought back or deleted: one at a
+  /// time.
   std::mutex waking;
+  AwaitedSimulations awaited;
   ModelCache models{8};
   Operations operations;
   SessionManager sessions;

@@ -20,7 +20,10 @@ void add_simulations(Backend& backend, Metrics& metrics) {
                                          "injected| / max(injected, initial content)");
   auto& memory = metrics.add_gauge("lipofill_simulation_memory_bytes",
                                    "What the simulations that have not ended are reckoned to take");
-  metrics.add_refresh([&backend, by_state, &volume_error, &memory] {
+  auto& awaited = metrics.add_gauge("lipofill_simulations_awaited",
+                                    "Simulations that could not be brought back yet since the daemon was started");
+  metrics.add_refresh([&backend, by_state, &volume_error, &memory, &awaited] {
+    awaited.Set(static_cast<double>(backend.awaited.size()));
     std::map<SimulationState, int> count;
     double largest = 0.0;
     for (const SessionView& view : backend.sessions.cached_views()) {

@@ -1,6 +1,7 @@
 #include "server/backend/parking.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/error_hints.h"
@@ -13,6 +14,8 @@ namespace lipofill::server {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
+
+constexpr double kLeastRetryDelayS = 0.1;
 
 /// Time between two rounds.
 Seconds period(Seconds idle) {
@@ -32,22 +35,26 @@ absl::StatusOr<std::shared_ptr<Session>> find_or_wake(Backend& backend, const st
   if (auto session = backend.sessions.hold(id); session != nullptr) return session;  // another was first
   const auto record = backend.store.get_simulation(id);
   if (!record.ok()) return record.status();
-  if (!is_parked(*record)) return nullptr;
+  if (has_ended(record->state)) return nullptr;
+  if (!is_parked(*record)) return no_session_for(backend, "ask for it", *record);
   return wake_simulation(backend, *record);
 }
 
-absl::Status no_session_for(const char* what, const SimulationRecord& record) {
+absl::Status no_session_for(Backend& backend, const char* what, const SimulationRecord& record) {
   const std::string cannot = absl::StrCat("cannot ", what, ": ", simulation_name(record.id));
   if (has_ended(record.state)) {
     return absl::FailedPreconditionError(absl::StrCat(cannot, " is ", state_name(record.state)));
   }
-  if (record.reason.empty()) {
-    // Its record is there, and can be listed, a moment before its session is.
-    constexpr double retry_delay_s = 0.1;
-    return with_hints(absl::UnavailableError(absl::StrCat(cannot, " is being made, try again")),
-                      {"BEING_MADE", retry_delay_s});
+  if (const auto awaited = backend.awaited.find(record.id)) {
+    const double delay_s = awaited->delay().count();
+    return with_hints(absl::UnavailableError(
+                          absl::StrCat(cannot, " is not back since the daemon was started again: it waits for this: ",
+                                       awaited->waiting_for, "; the daemon tries again in ", std::ceil(delay_s), " s")),
+                      {"NOT_BACK_YET", std::max(delay_s, kLeastRetryDelayS)});
   }
-  return absl::UnavailableError(absl::StrCat(cannot, " was not brought back: ", record.reason));
+  // Its record is there, and can be listed, a moment before its session is.
+  return with_hints(absl::UnavailableError(absl::StrCat(cannot, " is being made, try again")),
+                    {"BEING_MADE", kLeastRetryDelayS});
 }
 
 ParkingAttendant::ParkingAttendant(Backend& backend, Seconds idle) : backend_(backend), idle_(idle) {

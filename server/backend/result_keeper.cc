@@ -56,7 +56,7 @@ absl::StatusOr<bool> ResultKeeper::keep_restore(const CommandRecord& command, Si
   if (kept.ok() && *kept) {
     // Automatic checkpoints that were left off course are of no use.
     store_.prune_checkpoints(command.simulation, options_.kept).IgnoreError();
-    tidy(command.simulation);
+    temporary_.remove_deleted();
   }
   return kept;
 }
@@ -81,7 +81,8 @@ absl::StatusOr<CheckpointRecord> ResultKeeper::keep_checkpoint(const CheckpointR
   return written;
 }
 
-// The file first: a record whose file is not there is never seen; a file without a record is swept.
+// The file first: a record whose file is not there is never seen. It is noted before that: a file
+// that never gets its record is swept.
 absl::StatusOr<CheckpointRecord> ResultKeeper::write_checkpoint(const CheckpointRecord& draft,
                                                                 const std::string& snapshot,
                                                                 const std::vector<SeriesEntry>& rows,
@@ -99,25 +100,52 @@ absl::StatusOr<CheckpointRecord> ResultKeeper::write_checkpoint(const Checkpoint
   if (!room.ok() && draft.kind == CheckpointKind::kAutomatic) {
     // One checkpoint is better than none: it takes the place of the older ones.
     store_.prune_checkpoints(draft.simulation, 1).IgnoreError();
-    tidy(draft.simulation);
+    temporary_.remove_deleted();
     room = check_room(bytes);
   }
   if (!room.ok()) return room;
-  const auto written =
-      files_.write(draft.simulation, draft.id, {draft.simulation, draft.step, simulation->spec_message, snapshot});
+  const auto plan = plan_as_of(*simulation, draft.last_command);
+  if (!plan.ok()) return plan.status();
+  const std::string path = checkpoint_path(draft.simulation, draft.id);
+  if (absl::Status noted = temporary_.begin(path); !noted.ok()) return noted;
+  auto kept = write_noted(draft, *plan, snapshot, rows, request);
+  if (!kept.ok()) {
+    temporary_.give_up(path);
+  } else if (store_.prune_checkpoints(draft.simulation, options_.kept).ok()) {
+    temporary_.remove_deleted();
+  }
+  return kept;
+}
+
+absl::StatusOr<CheckpointRecord> ResultKeeper::write_noted(const CheckpointRecord& draft,
+                                                           const std::string& spec_message, const std::string& snapshot,
+                                                           const std::vector<SeriesEntry>& rows,
+                                                           const RequestKey& request) {
+  const auto written = files_.write(draft.simulation, draft.id, {draft.simulation, draft.step, spec_message, snapshot});
   if (!written.ok()) return written.status();
   CheckpointRecord record = draft;
   record.size_bytes = written->size_bytes;
   record.sha256 = written->sha256;
   std::optional<SeriesChunk> chunk;
   if (!rows.empty()) chunk = to_chunk(rows);
-  auto kept = store_.create_checkpoint(record, chunk, request);
-  if (!kept.ok()) {
-    files_.remove(draft.simulation, draft.id);
-  } else if (store_.prune_checkpoints(draft.simulation, options_.kept).ok()) {
-    tidy(draft.simulation);
+  return store_.create_checkpoint(record, chunk, request);
+}
+
+/// The plan without the injections that came after a command: a simulation that catches up has yet
+/// to take them. With 0 the plan as it is.
+absl::StatusOr<std::string> ResultKeeper::plan_as_of(const SimulationRecord& simulation, uint64_t last_command) const {
+  if (last_command == 0) return simulation.spec_message;
+  const auto commands = store_.list_commands(simulation.id);
+  if (!commands.ok()) return commands.status();
+  const auto later = std::count_if(commands->begin(), commands->end(), [last_command](const CommandRecord& command) {
+    return command.kind == CommandKind::kInject && command.number > last_command;
+  });
+  v1::SimulationSpec spec;
+  if (!spec.ParseFromString(simulation.spec_message) || spec.injections_size() < later) {
+    return absl::DataLossError("the plan does not go with its log");
   }
-  return kept;
+  spec.mutable_injections()->DeleteSubrange(spec.injections_size() - static_cast<int>(later), static_cast<int>(later));
+  return spec.SerializeAsString();
 }
 
 absl::Status ResultKeeper::check_number_asked(const std::string& simulation) const {
@@ -138,12 +166,6 @@ absl::Status ResultKeeper::check_room(uint64_t bytes) const {
   return absl::ResourceExhaustedError(absl::StrCat("checkpoints take ", *used, " bytes, with ", bytes,
                                                    " more they would be over the bound of ", options_.most_bytes,
                                                    "; delete some"));
-}
-
-void ResultKeeper::tidy(const std::string& simulation) const {
-  files_.sweep_simulation(simulation, [this](const std::string& owner, const std::string& checkpoint) {
-    return !absl::IsNotFound(store_.get_checkpoint(owner, checkpoint).status());
-  });
 }
 
 absl::Status ResultKeeper::append_series(const std::string& id, const std::vector<SeriesEntry>& rows) {
@@ -193,7 +215,7 @@ absl::Status ResultKeeper::ended(const std::string& id, const SessionView& view,
                                 to_whole_frame(frame, {meshes}).SerializeAsString()};
   const absl::Status kept = store_.end_simulation(record, result);
   if (!kept.ok()) return kept;
-  tidy(id);
+  temporary_.remove_deleted();
   sessions_.remove(id);
   metrics_.simulations().count_ended(state_name(view.state));
   return kept;

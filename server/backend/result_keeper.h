@@ -8,6 +8,7 @@
 #include "server/sessions/session_sink.h"
 #include "server/store/checkpoint_files.h"
 #include "server/store/store.h"
+#include "server/store/temporary_files.h"
 
 namespace lipofill::server {
 
@@ -23,9 +24,14 @@ struct CheckpointOptions {
 /// sessions that have ended. Counts what they do.
 class ResultKeeper : public SessionSink {
  public:
-  ResultKeeper(Store& store, CheckpointFiles& files, SessionManager& sessions, const CheckpointOptions& options,
-               Metrics& metrics)
-      : store_(store), files_(files), sessions_(sessions), options_(options), metrics_(metrics) {}
+  ResultKeeper(Store& store, CheckpointFiles& files, TemporaryFiles& temporary, SessionManager& sessions,
+               const CheckpointOptions& options, Metrics& metrics)
+      : store_(store),
+        files_(files),
+        temporary_(temporary),
+        sessions_(sessions),
+        options_(options),
+        metrics_(metrics) {}
   absl::StatusOr<bool> was_kept(const RequestKey& request) override;
   absl::StatusOr<bool> keep_command(const CommandRecord& command, const RequestKey& request) override;
   absl::StatusOr<bool> keep_injection(const CommandRecord& command, double start_s, const RequestKey& request) override;
@@ -43,18 +49,21 @@ class ResultKeeper : public SessionSink {
   absl::Status ended(const std::string& id, const SessionView& view, const Topology& topology,
                      const Frame& frame) override;
 
-  /// Removes files of a simulation's checkpoints that are in no record any more.
-  void tidy(const std::string& simulation) const;
   /// Returns OK when files of so many bytes more are within the bound.
   absl::Status check_room(uint64_t bytes) const;
 
  private:
   absl::StatusOr<CheckpointRecord> write_checkpoint(const CheckpointRecord& draft, const std::string& snapshot,
                                                     const std::vector<SeriesEntry>& rows, const RequestKey& request);
+  absl::StatusOr<CheckpointRecord> write_noted(const CheckpointRecord& draft, const std::string& spec_message,
+                                               const std::string& snapshot, const std::vector<SeriesEntry>& rows,
+                                               const RequestKey& request);
+  absl::StatusOr<std::string> plan_as_of(const SimulationRecord& simulation, uint64_t last_command) const;
   absl::Status check_number_asked(const std::string& simulation) const;
 
   Store& store_;
   CheckpointFiles& files_;
+  TemporaryFiles& temporary_;
   SessionManager& sessions_;
   const CheckpointOptions options_;
   Metrics& metrics_;

@@ -45,7 +45,7 @@ absl::StatusOr<geometry::SurfaceMesh> read_scan_surface(Backend& backend, const 
                                                       " is not complete: ", record->received_bytes, " of ",
                                                       record->size_bytes, " bytes are here"));
   }
-  const auto bytes = backend.scan_files.read(patient, scan);
+  const auto bytes = backend.scan_files.read_whole(patient, scan, record->sha256);
   if (!bytes.ok()) return bytes.status();
   return parse_scan(*record, *bytes);
 }

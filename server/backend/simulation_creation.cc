@@ -85,6 +85,7 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
   if (view != nullptr) {
     *simulation.mutable_summary() = to_summary(*view);
     simulation.set_viewers(static_cast<uint32_t>(view->viewers));
+    if (view->catching_up_to) simulation.mutable_recovery()->set_until_step(*view->catching_up_to);
   } else {
     simulation.mutable_summary()->ParseFromString(record.summary_message);
     simulation.set_parked(is_parked(record));
@@ -92,11 +93,26 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
   return simulation;
 }
 
+v1::Simulation show_without_session(const Backend& backend, const SimulationRecord& record) {
+  v1::Simulation simulation = to_simulation(record, nullptr);
+  const auto awaited = backend.awaited.find(record.id);
+  if (!awaited || has_ended(record.state)) return simulation;
+  simulation.set_reason(
+      absl::StrCat("it is not back since the daemon was started again: it waits for this: ", awaited->waiting_for));
+  v1::Recovery& recovery = *simulation.mutable_recovery();
+  recovery.set_until_step(awaited->until_step);
+  recovery.set_waiting_for(awaited->waiting_for);
+  recovery.set_attempts(awaited->attempts);
+  const auto delay_us = static_cast<int64_t>(1e6 * awaited->delay().count());
+  *recovery.mutable_next_attempt_time() = to_timestamp(now_us() + delay_us);
+  return simulation;
+}
+
 absl::StatusOr<v1::Simulation> show_simulation(Backend& backend, const std::string& id) {
   const auto record = backend.store.get_simulation(id);
   if (!record.ok()) return record.status();
   const auto session = backend.sessions.find(id);
-  if (session == nullptr) return to_simulation(*record, nullptr);
+  if (session == nullptr) return show_without_session(backend, *record);
   const SessionView view = session->cached_view();
   return to_simulation(*record, &view);
 }
@@ -164,12 +180,16 @@ absl::StatusOr<v1::Simulation> show_made_before(Backend& backend, const std::str
 
 absl::Status delete_simulation_record(Backend& backend, const std::string& id, const std::string& etag) {
   const auto record = backend.store.get_simulation(id);
-  if (!record.ok()) return record.status();
-  if (absl::Status fits = check_etag(etag, make_etag(*record), "etag"); !fits.ok()) return fits;
-  const absl::Status done = backend.store.delete_simulation(id);
+  // What is damaged can go, unless it is to be checked first.
+  if (!record.ok() && (!absl::IsDataLoss(record.status()) || !etag.empty())) return record.status();
+  if (record.ok()) {
+    if (absl::Status fits = check_etag(etag, make_etag(*record), "etag"); !fits.ok()) return fits;
+  }
+  const absl::Status done = backend.reserve.spend([&] { return backend.store.delete_simulation(id); });
   if (!done.ok()) return done;
   backend.sessions.remove(id);
-  backend.checkpoint_files.remove_simulation(id);
+  backend.awaited.forget(id);
+  backend.temporary_files.remove_deleted();
   spdlog::info("{} deleted", simulation_name(id));
   return done;
 }

@@ -15,6 +15,9 @@ namespace lipofill::server {
 /// memory.
 v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* view);
 
+/// The same for one that is not in memory: it may have ended, be parked, or not be back yet.
+v1::Simulation show_without_session(const Backend& backend, const SimulationRecord& record);
+
 /// The simulation as it is now.
 absl::StatusOr<v1::Simulation> show_simulation(Backend& backend, const std::string& id);
 

@@ -15,6 +15,7 @@
 #include "server/sessions/draining.h"
 #include "server/sessions/identifiers.h"
 #include "server/store/record_names.h"
+#include "server/store/row_sums.h"
 #include "server/wire/simulation_conversion.h"
 #include "spdlog/spdlog.h"
 
@@ -41,11 +42,17 @@ bool is_about_the_checkpoint(const absl::Status& status) {
   return absl::IsDataLoss(status) || absl::IsNotFound(status);
 }
 
+/// For what may be there another time: a model that cannot be built for want of memory or of a
+/// file, a file that is put back. What the store itself holds does not come back.
+absl::Status waits_for(const absl::Status& why) {
+  return absl::UnavailableError(std::string(why.message()));
+}
+
 /// Checkpoints on course, newest first.
 absl::StatusOr<std::vector<CheckpointRecord>> list_candidates(Backend& backend, const std::string& id) {
   auto all = backend.store.list_checkpoints(id, {"", kMostCheckpoints});
   if (!all.ok()) return all;
-  std::erase_if(*all, [](const CheckpointRecord& c) { return !c.on_course; });
+  std::erase_if(*all, [](const CheckpointRecord& c) { return c.is_damaged || !c.on_course; });
   std::sort(all->begin(), all->end(), [](const CheckpointRecord& a, const CheckpointRecord& b) {
     return std::tie(a.last_command, a.step, a.create_time_us) > std::tie(b.last_command, b.step, b.create_time_us);
   });
@@ -58,7 +65,7 @@ void note_unusable(Backend& backend, const CheckpointRecord& checkpoint, const a
   absl::StrAppend(&note, note.empty() ? "" : "; ", std::string(why.message()));
   if (checkpoint.kind != CheckpointKind::kAutomatic) return;
   if (backend.store.delete_checkpoint(checkpoint.simulation, checkpoint.id).ok()) {
-    backend.checkpoint_files.remove(checkpoint.simulation, checkpoint.id);
+    backend.temporary_files.remove_deleted();
   }
 }
 
@@ -78,7 +85,7 @@ absl::StatusOr<v1::SimulationSpec> plan_at_start(const SimulationRecord& record,
 absl::StatusOr<Ground> find_ground(Backend& backend, const SimulationRecord& record,
                                    const std::vector<CommandRecord>& commands) {
   // No checkpoint is any good without the model, and none is to blame.
-  if (auto model = backend.load_model(record.model); !model.ok()) return model.status();
+  if (auto model = backend.load_model(record.model); !model.ok()) return waits_for(model.status());
   const auto candidates = list_candidates(backend, record.id);
   if (!candidates.ok()) return candidates.status();
   Ground ground;
@@ -94,7 +101,7 @@ absl::StatusOr<Ground> find_ground(Backend& backend, const SimulationRecord& rec
     note_unusable(backend, candidate, loaded.status(), ground.note);
   }
   if (!record.origin.empty()) {
-    return absl::DataLossError(absl::StrCat("it began from ", record.origin, "; ", ground.note));
+    return waits_for(absl::DataLossError(absl::StrCat("it began from ", record.origin, "; ", ground.note)));
   }
   auto spec = plan_at_start(record, commands);
   if (!spec.ok()) return spec.status();
@@ -110,12 +117,15 @@ absl::StatusOr<SessionHistory> history_from(const Ground& ground, const Simulati
                                             const std::vector<CommandRecord>& commands) {
   SessionHistory history;
   history.state = record.state;
+  history.was_there = true;
+  history.last_command = ground.checkpoint.last_command;
   history.wall_s = ground.checkpoint.wall_s;
   if (!ground.note.empty()) {
     history.note = absl::StrCat("goes on from step ", ground.checkpoint.step, ": ", ground.note);
   }
   for (const CommandRecord& command : commands) {
     if (command.number <= ground.checkpoint.last_command) continue;
+    history.commands.push_back({command.number, command.step});
     history.until_step = std::max(history.until_step, command.step);
     if (command.kind == CommandKind::kStop) history.stop_reason = command.payload;
     if (command.kind != CommandKind::kInject) continue;
@@ -154,21 +164,38 @@ absl::Status bring_back(Backend& backend, const SimulationRecord& record) {
   if (!revived.ok()) return revived.status();
   // The summary it was parked with soon no longer holds.
   if (auto cleared = backend.store.keep_summary(record.id, ""); !cleared.ok()) return cleared;
-  backend.sessions.bring_back(record.tenant, revived->bytes, std::move(revived->session));
+  if (!backend.sessions.bring_back(record.tenant, revived->bytes, std::move(revived->session))) return draining();
+  backend.awaited.forget(record.id);
   return absl::OkStatus();
 }
 
-/// A simulation whose model, plan or log is lost has failed; one that met a shortage may come back
-/// another time.
-void tell_failure(Backend& backend, const SimulationRecord& record, const absl::Status& why) {
+/// The step at which the last command of a simulation took effect.
+uint64_t last_step_of(Backend& backend, const SimulationRecord& record) {
+  const auto commands = backend.store.list_commands(record.id);
+  uint64_t step = 0;
+  if (!commands.ok()) return step;
+  for (const CommandRecord& command : *commands) step = std::max(step, command.step);
+  return step;
+}
+
+void note_waiting(Backend& backend, const SimulationRecord& record, const std::string& waiting_for) {
+  backend.awaited.note(record.id, waiting_for, last_step_of(backend, record));
+  const auto awaited = backend.awaited.find(record.id);
+  spdlog::warn("{} could not be brought back: {}; the next attempt is in {:.0f} s", simulation_name(record.id),
+               waiting_for, awaited ? awaited->delay().count() : 0.0);
+}
+
+/// A simulation whose plan or log is lost has failed; one that met a shortage, or for which a file
+/// is missing, waits.
+void note_failure(Backend& backend, const SimulationRecord& record, const absl::Status& why) {
   const bool is_lost = absl::IsDataLoss(why) || absl::IsNotFound(why) || absl::IsInvalidArgument(why);
+  if (!is_lost) return note_waiting(backend, record, std::string(why.message()));
   const std::string reason =
       absl::StrCat("it cannot go on after the daemon was started again: ", std::string(why.message()));
+  const absl::Status told = backend.store.set_simulation_state(record.id, SimulationState::kFailed, reason);
+  if (!told.ok()) return note_waiting(backend, record, std::string(told.message()));
   spdlog::error("{}: {}", simulation_name(record.id), reason);
-  const SimulationState state = is_lost ? SimulationState::kFailed : record.state;
-  if (auto told = backend.store.set_simulation_state(record.id, state, reason); !told.ok()) {
-    spdlog::error("{}: {}", simulation_name(record.id), told.ToString());
-  }
+  backend.awaited.forget(record.id);
 }
 
 }  // namespace
@@ -180,9 +207,10 @@ absl::Status bring_back_simulations(Backend& backend) {
   const auto work = [&] {
     for (size_t i = next++; i < records->size(); i = next++) {
       const SimulationRecord& record = (*records)[i];
-      if (is_parked(record)) continue;
+      if (record.is_damaged) spdlog::error("{}", std::string(damaged_record(simulation_name(record.id)).message()));
+      if (record.is_damaged || is_parked(record)) continue;
       const absl::Status back = guarded([&] { return bring_back(backend, record); });
-      if (!back.ok()) tell_failure(backend, record, back);
+      if (!back.ok()) note_failure(backend, record, back);
     }
   };
   std::vector<std::thread> threads;
@@ -190,6 +218,19 @@ absl::Status bring_back_simulations(Backend& backend) {
   for (size_t i = 0; i < n_threads; ++i) threads.emplace_back(work);
   for (std::thread& thread : threads) thread.join();
   return absl::OkStatus();
+}
+
+void try_to_bring_back(Backend& backend, const std::string& id) {
+  const std::lock_guard lock(backend.waking);
+  const auto record = backend.store.get_simulation(id);
+  const bool is_gone = absl::IsNotFound(record.status()) || (record.ok() && has_ended(record->state));
+  if (is_gone || backend.sessions.find(id) != nullptr) return backend.awaited.forget(id);
+  SimulationRecord known;
+  known.id = id;
+  if (record.ok()) known = *record;
+  const absl::Status back =
+      record.ok() ? guarded([&] { return bring_back(backend, known); }) : waits_for(record.status());
+  if (!back.ok()) note_failure(backend, known, back);
 }
 
 absl::StatusOr<std::shared_ptr<Session>> wake_simulation(Backend& backend, const SimulationRecord& record) {

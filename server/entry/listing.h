@@ -4,10 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "absl/strings/escaping.h"
 #include "server/store/records.h"
 #include "server/wire/names.h"
 
 namespace lipofill::server {
+
+/// Names what a list cannot show because it is damaged; the name itself may be what rotted.
+template <typename Response>
+void add_unreachable(const std::string& name, Response& response) {
+  response.add_unreachable(absl::CHexEscape(name));
+}
 
 /// One more than the page holds tells whether there is a next one.
 inline Page one_more(const PageRequest& page) {

@@ -19,6 +19,7 @@ struct MethodRule {
   Role least = Role::kAdmin;
   bool is_open = false;      ///< everybody may call it, also who does not say who they are
   bool is_frequent = false;  ///< so often that the audit log has only what is refused of it
+  bool makes_room = false;   ///< the room that is kept back is for it
 };
 
 /// The rule of a method by its full name, "/lipofill.v1.PatientService/GetPatient"; nullptr without

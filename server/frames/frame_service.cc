@@ -114,13 +114,13 @@ absl::Status FrameService::begin(grpc::CallbackServerContext* context, const grp
   }
   stream = std::make_shared<WatchStream>(backend_.courier, backend_.metrics.viewers(), request->known_topology_hash(),
                                          std::move(place));
-  if (const auto& expires = call_of(context).principal.expires) stream->end_at(to_steady(*expires));
+  if (const auto& expires = call_of(context).principal.expires) stream->end_at(to_steady(*expires), *expires);
   if (const auto session = backend_.sessions.hold(*id); session != nullptr) {
     return watch_session(*request, session, stream);
   }
   const auto record = backend_.store.get_simulation(*id);
   if (record.ok() && is_parked(*record)) return watch_parked(*request, *id, stream);
-  if (record.ok() && record->state == SimulationState::kReady) return no_session_for("watch", *record);
+  if (record.ok() && !has_ended(record->state)) return no_session_for(backend_, "watch", *record);
   return watch_kept(*request, *id, stream);
 }
 

@@ -85,7 +85,7 @@ void WatchStream::advance(std::unique_lock<std::mutex> lock) {
   if (cancelled_) {
     end_ = absl::CancelledError("the viewer has gone");
     outgoing_.clear();
-  } else if (!end_ && clock_.is_over(Courier::Clock::now())) {
+  } else if (!end_ && clock_.is_over(Courier::Clock::now(), std::chrono::system_clock::now())) {
     end_ = token_expired();
     outgoing_.clear();
   } else if (outgoing_.empty() && !end_) {
@@ -129,7 +129,7 @@ void WatchStream::fetch() {
 void WatchStream::send_due_heartbeat() {
   if (viewer_ == nullptr) return;
   if (clock_.heartbeat_is_due(Courier::Clock::now())) return outgoing_.add_heartbeat(viewer_->unacknowledged());
-  if (const auto alarm = clock_.set_alarm()) courier_.wake_at(weak_from_this(), *alarm);
+  if (const auto alarm = clock_.set_alarm(Courier::Clock::now())) courier_.wake_at(weak_from_this(), *alarm);
 }
 
 }  // namespace lipofill::server

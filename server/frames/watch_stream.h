@@ -33,7 +33,7 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
       : courier_(courier), place_(std::move(place)), outgoing_(metrics, std::move(known_topology_hash)) {}
 
   /// Sets the time at which the stream ends with UNAUTHENTICATED; to be called before it begins.
-  void end_at(Courier::Clock::time_point time) { clock_.set_end(time); }
+  void end_at(Courier::Clock::time_point time, StreamClock::WallTime wall_time) { clock_.set_end(time, wall_time); }
 
   /// A stream that shows what a session puts into the viewer, and a heartbeat where that was
   /// nothing for so long. `on_done` is called once, at the end. False, and nothing is shown, when

@@ -32,7 +32,9 @@ constexpr char kFooter[] =
     "                                                    say what is set, and what is wrong with it\n"
     "  lipofilld --data ~/lipofill --backup-to /mnt/backup/today\n"
     "                                                    copy the store while the daemon runs; also checkable by\n"
-    "                                                    sha256sum -c SHA256SUMS\n"
+    "                                                    sha256sum -c SHA256SUMS. 3: something was damaged before,\n"
+    "                                                    and is named\n"
+    "  lipofilld --data ~/lipofill --verify              look for silent damage of what is kept\n"
     "\n"
     "SIGTERM and SIGINT drain it: it takes no new work, tells viewers, keeps the state of simulations, and ends with "
     "0. "
@@ -44,6 +46,7 @@ struct CommandLine {
   bool check = false;
   std::string backup_to;
   std::string restore_from;
+  bool verify = false;
   std::vector<std::string> audit_files;  ///< the chains of these are verified
 };
 
@@ -80,6 +83,12 @@ std::optional<CommandLine> read_command_line(int argc, char** argv, const std::v
                  "Fill --data, which must have no store yet, from a backup that was checked whole, and end")
       ->type_name("DIR")
       ->excludes("--backup-to");
+  app.add_flag("--verify", line.verify,
+               "Look at everything that is kept in --data, whether a daemon serves it or not: every record, series, "
+               "result, scan and checkpoint, whether it is what was written; name what is damaged, and end with 0 when "
+               "nothing is, 3 when something is, 1 when it cannot be looked at")
+      ->excludes("--backup-to")
+      ->excludes("--restore-from");
   app.add_option("--verify-audit", line.audit_files,
                  "Look through files of an audit log, given in their order, for lines changed, taken out or put in")
       ->type_name("FILE")
@@ -221,6 +230,12 @@ std::vector<Setting> settings_of(Options& options) {
        "Simulations that rest and that nobody has asked for so long are kept on disk alone until somebody does; 0: "
        "never",
        &options.park_after_s, 0, 1e7},
+      {"space-reserve-mb", "MB",
+       "Room kept back in --data, so that things can be deleted when the disk is full; 0: none",
+       &options.space_reserve_mb, 0, 1e6},
+      {"drop-uploads-after-s", "SECONDS",
+       "A scan of which bytes have yet to come, and none has come for so long, is removed; 0: never",
+       &options.drop_uploads_after_s, 0, 1e9},
       {"drain-delay-s", "SECONDS",
        "After SIGTERM, say NOT_SERVING and go on for this long, so that load balancers notice", &options.drain_delay_s,
        0, 600},
@@ -288,6 +303,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_code) {
   }
   options.backup_to = line->backup_to;
   options.restore_from = line->restore_from;
+  options.verify = line->verify;
   return options;
 }
 

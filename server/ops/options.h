@@ -17,6 +17,7 @@ struct Options {
   /// Tasks to do in place of serving; at most one is given.
   std::string backup_to;
   std::string restore_from;
+  bool verify = false;
 
   std::vector<std::string> listen = {"127.0.0.1:50061"};
   bool insecure_listen_anywhere = false;
@@ -42,6 +43,8 @@ struct Options {
   int checkpoints_kept = 3;
   uint64_t checkpoint_space_mb = 8192;
   double park_after_s = 1800.0;
+  uint64_t space_reserve_mb = 16;
+  double drop_uploads_after_s = 604'800.0;
   double drain_delay_s = 0.0;
   double drain_timeout_s = 30.0;
   std::string log_level = "info";

@@ -119,11 +119,14 @@ absl::Status update_patient(Backend& backend, const v1::UpdatePatientRequest& re
 absl::Status delete_patient(Backend& backend, const v1::DeletePatientRequest& request) {
   const auto id = parse_patient_name(request.name(), "name");
   if (!id.ok()) return id.status();
-  const auto check = [&request](const PatientRecord& present) {
-    return check_etag(request.etag(), make_etag(present), "etag");
-  };
-  if (auto done = backend.store.delete_patient(*id, request.force(), check); !done.ok()) return done;
-  backend.scan_files.remove_patient(*id);
+  Store::PatientCheck check;
+  if (!request.etag().empty()) {
+    check = [&request](const PatientRecord& present) { return check_etag(request.etag(), make_etag(present), "etag"); };
+  }
+  const absl::Status done =
+      backend.reserve.spend([&] { return backend.store.delete_patient(*id, request.force(), check); });
+  if (!done.ok()) return done;
+  backend.temporary_files.remove_deleted();
   spdlog::info("{} deleted", request.name());
   return absl::OkStatus();
 }
@@ -157,6 +160,7 @@ PatientService::Reactor* PatientService::ListPatients(Context* context, const v1
     const auto patients = backend_.store.list_patients(call_of(context).principal.scope, one_more(*page));
     if (!patients.ok()) return patients.status();
     response->set_next_page_token(fill_page("patients", *page, *patients, [response](const PatientRecord& patient) {
+      if (patient.is_damaged) return add_unreachable(patient_name(patient.id), *response);
       *response->add_patients() = to_patient(patient);
     }));
     return absl::OkStatus();
@@ -209,8 +213,10 @@ PatientService::Reactor* PatientService::ListScans(Context* context, const v1::L
     if (!page.ok()) return page.status();
     const auto scans = backend_.store.list_scans(*patient, one_more(*page));
     if (!scans.ok()) return scans.status();
-    response->set_next_page_token(fill_page(
-        collection, *page, *scans, [response](const ScanRecord& scan) { *response->add_scans() = to_scan(scan); }));
+    response->set_next_page_token(fill_page(collection, *page, *scans, [response](const ScanRecord& scan) {
+      if (scan.is_damaged) return add_unreachable(scan_name(scan.patient, scan.id), *response);
+      *response->add_scans() = to_scan(scan);
+    }));
     return absl::OkStatus();
   });
 }
@@ -220,8 +226,9 @@ PatientService::Reactor* PatientService::DeleteScan(Context* context, const v1::
   return answer(context, request, [&]() -> absl::Status {
     const auto ids = parse_scan_name(request->name(), "name");
     if (!ids.ok()) return ids.status();
-    if (auto done = backend_.store.delete_scan(ids->patient, ids->id); !done.ok()) return done;
-    backend_.scan_files.remove(ids->patient, ids->id);
+    const absl::Status done = backend_.reserve.spend([&] { return backend_.store.delete_scan(ids->patient, ids->id); });
+    if (!done.ok()) return done;
+    backend_.temporary_files.remove_deleted();
     spdlog::info("{} deleted", request->name());
     return absl::OkStatus();
   });
@@ -263,6 +270,7 @@ PatientService::Reactor* PatientService::ListModels(Context* context, const v1::
     const auto models = backend_.store.list_models(*patient, one_more(*page));
     if (!models.ok()) return models.status();
     response->set_next_page_token(fill_page(collection, *page, *models, [&](const ModelRecord& model) {
+      if (model.is_damaged) return add_unreachable(model_name(model.patient, model.id), *response);
       *response->add_models() = to_model(model);
       apply_field_mask(mask, *response->mutable_models()->rbegin());
     }));
@@ -275,7 +283,9 @@ PatientService::Reactor* PatientService::DeleteModel(Context* context, const v1:
   return answer(context, request, [&]() -> absl::Status {
     const auto ids = parse_model_name(request->name(), "name");
     if (!ids.ok()) return ids.status();
-    if (auto done = backend_.store.delete_model(ids->patient, ids->id); !done.ok()) return done;
+    const absl::Status done =
+        backend_.reserve.spend([&] { return backend_.store.delete_model(ids->patient, ids->id); });
+    if (!done.ok()) return done;
     backend_.models.remove(request->name());
     spdlog::info("{} deleted", request->name());
     return absl::OkStatus();

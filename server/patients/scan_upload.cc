@@ -193,7 +193,7 @@ absl::StatusOr<ScanRecord> ScanUploads::complete(const std::string& patient, con
     spdlog::info("{} is complete, {} bytes", scan_name(patient, scan), record->size_bytes);
   } else if (absl::IsInvalidArgument(record.status())) {
     backend_.store.delete_scan(patient, scan).IgnoreError();
-    backend_.scan_files.remove(patient, scan);
+    backend_.temporary_files.remove_deleted();
     spdlog::info("{} is refused and removed: {}", scan_name(patient, scan), record.status().ToString());
   }
   return record;

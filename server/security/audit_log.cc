@@ -13,13 +13,16 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "server/security/audit_tail.h"
+#include "server/store/durable_file.h"
 #include "spdlog/spdlog.h"
 
 namespace lipofill::server {
 namespace {
 
 absl::Status cannot(const char* what, const std::string& path) {
-  return absl::FailedPreconditionError(absl::StrCat("cannot ", what, " ", path, ": ", std::strerror(errno)));
+  const bool is_full = is_out_of_space(errno);
+  const std::string message = absl::StrCat("cannot ", what, " ", path, ": ", std::strerror(errno));
+  return is_full ? absl::ResourceExhaustedError(message) : absl::FailedPreconditionError(message);
 }
 
 absl::Status sync_folder_of(const std::string& path) {

@@ -7,7 +7,9 @@
 namespace lipofill::server {
 
 /// When a session keeps its state by itself as it runs: at intervals, which grow where keeping is
-/// slow, so that it takes less than a hundredth of the run. Checked by
+/// slow, so that it takes less than a hundredth of the run. After a start of the daemon intervals
+/// are short and double each time, and keeping may take a tenth: where daemons die again and again,
+/// each gets a little further than the one before. Checked by
 /// tests/unit/server/sessions/checkpoint_schedule_test.cc.
 class CheckpointSchedule {
  public:
@@ -21,6 +23,8 @@ class CheckpointSchedule {
   bool is_on() const { return interval_s_ > 0.0; }
   /// The first interval begins, when it has not yet.
   void begin(Time now = Clock::now());
+  /// The first of the short intervals begins.
+  void begin_soon(Time now = Clock::now());
   bool is_due(Time now = Clock::now()) const { return is_on() && due_ && now >= *due_; }
   /// The next interval begins, after keeping the state, or failing to, took this time.
   void begin_next(Time began, Time ended = Clock::now());
@@ -33,6 +37,7 @@ class CheckpointSchedule {
   Clock::duration interval() const;
 
   const double interval_s_;
+  std::optional<Clock::duration> soon_;  ///< the short interval at hand
   std::optional<Time> due_;
   std::optional<uint64_t> kept_step_;
 };

@@ -92,7 +92,7 @@ void LiveSimulation::note_changed_plan(const std::string& why) {
 }
 
 absl::StatusOr<CheckpointRecord> LiveSimulation::keep_checkpoint(CheckpointKind kind, const std::string& id,
-                                                                 const RequestKey& request) {
+                                                                 uint64_t last_command, const RequestKey& request) {
   const SessionView view = measure();
   CheckpointRecord draft;
   draft.simulation = id_;
@@ -101,6 +101,7 @@ absl::StatusOr<CheckpointRecord> LiveSimulation::keep_checkpoint(CheckpointKind 
   draft.step = view.report.step;
   draft.time_s = view.report.time;
   draft.wall_s = view.wall_s;
+  draft.last_command = last_command;
   draft.state_hash = view.state_hash;
   draft.create_time_us = now_us();
   const std::vector<SeriesEntry> rows = series_.after(0);

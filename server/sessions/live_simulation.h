@@ -39,6 +39,7 @@ class LiveSimulation {
   simulation::Simulation* simulation() const { return simulation_.get(); }
   RunClock& clock() { return clock_; }
   void set_state(SimulationState state, std::string reason);
+  void set_catching_up(std::optional<uint64_t> until_step) { figures_.set_catching_up(until_step); }
   void set_reason(std::string reason) { figures_.set_reason(std::move(reason)); }
   /// The figures as they are now, with the state hash.
   SessionView measure();
@@ -53,7 +54,8 @@ class LiveSimulation {
   /// Goes on with another simulation of the plan, in a new epoch.
   void go_back(std::unique_ptr<simulation::Simulation> simulation, double wall_s);
   /// Has the sink keep the present state, and with it the rows that are not there yet.
-  absl::StatusOr<CheckpointRecord> keep_checkpoint(CheckpointKind kind, const std::string& id,
+  /// `last_command` is the number of the last command in it; 0: all that the sink has.
+  absl::StatusOr<CheckpointRecord> keep_checkpoint(CheckpointKind kind, const std::string& id, uint64_t last_command,
                                                    const RequestKey& request);
 
   bool is_watched() const { return !audience_.empty(); }

@@ -1,5 +1,6 @@
 #include "server/sessions/replay.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -22,6 +23,19 @@ absl::Status Replay::repeat(simulation::Simulation& simulation) {
                                                   step, ": ", std::string(done.message())));
   }
   return absl::OkStatus();
+}
+
+uint64_t Replay::last_command_in(uint64_t step) const {
+  if (!under_way_) return 0;
+  uint64_t last = history_.last_command;
+  for (const SessionHistory::Taken& command : history_.commands) {
+    if (command.step < step) last = std::max(last, command.number);
+  }
+  return last;
+}
+
+std::optional<uint64_t> Replay::until_step() const {
+  return under_way_ ? std::optional(history_.until_step) : std::nullopt;
 }
 
 std::string Replay::describe() const {

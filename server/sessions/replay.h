@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "core/simulation/simulation.h"
@@ -15,7 +16,15 @@ namespace lipofill::server {
 /// session goes on from. They take effect after the same steps as the first time.
 struct SessionHistory {
   SimulationState state = SimulationState::kReady;
-  double wall_s = 0.0;  ///< spent RUNNING
+  double wall_s = 0.0;     ///< spent RUNNING
+  bool was_there = false;  ///< it was made before the daemon was started again
+  /// What the state has in it already, and the commands after that.
+  uint64_t last_command = 0;
+  struct Taken {
+    uint64_t number = 0;
+    uint64_t step = 0;
+  };
+  std::vector<Taken> commands;
   struct Injection {
     uint64_t step = 0;
     plan::InjectionSpec spec;
@@ -41,6 +50,12 @@ class Replay {
   absl::Status repeat(simulation::Simulation& simulation);
   /// True when nothing is left to repeat at this step or later, but for the stop.
   bool has_caught_up(uint64_t step) const { return history_.injections.empty() && step >= history_.until_step; }
+  /// The number of the last command that is in a state after so many steps, before repeat() was
+  /// called for it; 0 when nothing is under way: all are.
+  uint64_t last_command_in(uint64_t step) const;
+  /// The step at which it will have caught up; none once it has.
+  std::optional<uint64_t> until_step() const;
+  bool was_there() const { return history_.was_there; }
   /// The reason of the stop that ended it, if one did.
   const std::optional<std::string>& stop_reason() const { return history_.stop_reason; }
   void end() { under_way_ = false; }

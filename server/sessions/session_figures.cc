@@ -35,6 +35,11 @@ void SessionFigures::set_reason(std::string reason) {
   view_.reason = std::move(reason);
 }
 
+void SessionFigures::set_catching_up(std::optional<uint64_t> until_step) {
+  const std::lock_guard lock(mutex_);
+  view_.catching_up_to = until_step;
+}
+
 void SessionFigures::set_preview(const std::optional<PreviewView>& preview) {
   const std::lock_guard lock(mutex_);
   view_.preview = preview;

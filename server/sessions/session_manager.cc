@@ -129,14 +129,16 @@ uint64_t SessionManager::memory_bytes() const {
   return bytes_taken_;
 }
 
-void SessionManager::bring_back(const std::string& tenant, uint64_t bytes, std::shared_ptr<Session> session) {
+bool SessionManager::bring_back(const std::string& tenant, uint64_t bytes, std::shared_ptr<Session> session) {
   {
     const std::lock_guard lock(mutex_);
+    if (stopping_) return false;
     take(tenant);
     bytes_taken_ += bytes;
     sessions_[session->id()] = {session, tenant, bytes};
   }
   session->go_on();
+  return true;
 }
 
 void SessionManager::suspend_all() {

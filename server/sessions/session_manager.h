@@ -58,8 +58,8 @@ class SessionManager {
   /// Removes the session, unless it is held: then it stays and this returns false.
   [[nodiscard]] bool remove_unless_held(const std::string& id);
   /// Adds one that was there before the daemon was started again, whatever the bounds, and lets it
-  /// go on.
-  void bring_back(const std::string& tenant, uint64_t bytes, std::shared_ptr<Session> session);
+  /// go on; false once suspend_all() was called.
+  bool bring_back(const std::string& tenant, uint64_t bytes, std::shared_ptr<Session> session);
 
   /// Ends all sessions when the daemon ends: takes no more of them, ends viewers' streams with
   /// draining(), has every session keep its state and take no step or command any more. Returns

@@ -59,6 +59,7 @@ struct SessionView {
   /// Once it has settled; a status that says why nothing is known.
   std::optional<absl::StatusOr<simulation::DiscretisationError>> discretisation;
   int viewers = 0;
+  std::optional<uint64_t> catching_up_to;  ///< step, while it repeats what it did before the daemon was started again
 };
 
 /// Durable storage of a session. It is called on whichever thread runs the session, between steps;

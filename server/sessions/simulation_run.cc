@@ -41,7 +41,9 @@ SimulationRun::SimulationRun(const SessionOptions& options, std::unique_ptr<simu
       real_time_(options.real_time),
       live_(options, std::move(simulation), history.state, history.wall_s, sink),
       replay_(std::move(history), live_.figures().latest().report.step),
-      checkpoints_(options.checkpoint_interval_s, step_kept(live_.figures().latest().report.step)) {}
+      checkpoints_(options.checkpoint_interval_s, step_kept(live_.figures().latest().report.step)) {
+  live_.set_catching_up(replay_.until_step());
+}
 
 // ---- steps
 
@@ -91,6 +93,7 @@ void SimulationRun::catch_up() {
   if (replay_.stop_reason()) return finish(SimulationState::kStopped, *replay_.stop_reason());
   live_.clock().stop();  // real time begins here
   replay_.end();
+  live_.set_catching_up(std::nullopt);
   live_.set_reason(replay_.note());
 }
 
@@ -98,7 +101,12 @@ void SimulationRun::catch_up() {
 
 void SimulationRun::go_on() {
   live_.set_reason(replay_.describe());
-  if (takes_steps()) checkpoints_.begin();
+  if (!takes_steps()) return;
+  if (replay_.was_there()) {
+    checkpoints_.begin_soon();
+  } else {
+    checkpoints_.begin();
+  }
 }
 
 void SimulationRun::run() {
@@ -154,6 +162,7 @@ absl::Status SimulationRun::park() {
 void SimulationRun::let_go() {
   live_.let_go();
   replay_.end();
+  live_.set_catching_up(std::nullopt);
 }
 
 // ---- checkpoints
@@ -166,7 +175,7 @@ void SimulationRun::go_back(const CheckpointRecord& checkpoint, std::unique_ptr<
 
 absl::StatusOr<CheckpointRecord> SimulationRun::keep_checkpoint(CheckpointKind kind, const std::string& id,
                                                                 const RequestKey& request) {
-  auto kept = live_.keep_checkpoint(kind, id, request);
+  auto kept = live_.keep_checkpoint(kind, id, replay_.last_command_in(live_.simulation()->report().step), request);
   if (kept.ok()) checkpoints_.note_kept(live_.simulation()->report().step);
   return kept;
 }
@@ -176,18 +185,19 @@ absl::Status SimulationRun::keep_automatically() {
 }
 
 absl::Status SimulationRun::save() {
-  if (live_.simulation() == nullptr || replay_.under_way()) return absl::OkStatus();
+  if (live_.simulation() == nullptr) return absl::OkStatus();
   const uint64_t step = live_.simulation()->report().step;
   if (step == 0 || checkpoints_.kept_step() == step) return absl::OkStatus();
   return keep_automatically();
 }
 
 void SimulationRun::checkpoint_when_due() {
-  if (state() != SimulationState::kRunning || replay_.under_way() || !checkpoints_.is_due()) return;
+  const bool moves = state() == SimulationState::kRunning || replay_.under_way();
+  if (!moves || !checkpoints_.is_due()) return;
   const Clock::time_point began = Clock::now();
   const absl::Status kept = keep_automatically();
   checkpoints_.begin_next(began);
-  if (kept.ok()) return live_.set_reason(replay_.note());
+  if (kept.ok()) return live_.set_reason(replay_.describe());
   const SessionView& view = live_.figures().latest();
   spdlog::error("simulations/{}: no checkpoint at step {}: {}", id_, view.report.step, kept.ToString());
   const auto last = checkpoints_.kept_step();

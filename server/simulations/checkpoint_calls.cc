@@ -71,16 +71,39 @@ absl::StatusOr<CheckpointRecord> copy_checkpoint(Backend& backend, const LoadedC
   if (auto room = backend.keeper.check_room(record.size_bytes); !room.ok()) return room;
   CheckpointContent content = loaded.content;
   content.simulation = simulation;
+  const std::string path = checkpoint_path(simulation, kOriginId);
+  if (absl::Status noted = backend.temporary_files.begin(path); !noted.ok()) return noted;
   const auto written = backend.checkpoint_files.write(simulation, kOriginId, content);
-  if (!written.ok()) return written.status();
+  if (!written.ok()) {
+    backend.temporary_files.give_up(path);
+    return written.status();
+  }
   record.simulation = simulation;
   record.id = kOriginId;
   record.kind = CheckpointKind::kOrigin;
   record.size_bytes = written->size_bytes;
   record.sha256 = written->sha256;
   record.wall_s = 0.0;
+  record.last_command = 0;
   record.create_time_us = now_us();
   return record;
+}
+
+/// The record of a simulation, and the checkpoint it begins from. Nobody else takes the name
+/// meanwhile: the file would be another's.
+absl::StatusOr<SimulationRecord> keep_with_origin(Backend& backend, const SimulationRecord& record,
+                                                  const LoadedCheckpoint& loaded, const RestoreTarget& target) {
+  const std::lock_guard lock(backend.waking);
+  if (!absl::IsNotFound(backend.store.get_simulation(record.id).status())) {
+    return absl::AlreadyExistsError(absl::StrCat(simulation_name(record.id), " exists"));
+  }
+  const auto copy = copy_checkpoint(backend, loaded, target.checkpoint, record.id);
+  if (!copy.ok()) return copy.status();
+  auto kept = backend.store.create_simulation_from(record, *copy, target.key);
+  if (!kept.ok() || kept->id != record.id) {
+    backend.temporary_files.give_up(checkpoint_path(record.id, kOriginId));
+  }
+  return kept;
 }
 
 absl::StatusOr<v1::Simulation> begin_from(Backend& backend, const RestoreTarget& target,
@@ -103,10 +126,7 @@ absl::StatusOr<v1::Simulation> begin_from(Backend& backend, const RestoreTarget&
   record.create_time_us = now_us();
   record.origin = request.checkpoint();
   record.tenant = target.source.tenant;
-  const auto copy = copy_checkpoint(backend, *loaded, target.checkpoint, *id);
-  if (!copy.ok()) return copy.status();
-  const auto kept = backend.store.create_simulation_from(record, *copy, target.key);
-  if (!kept.ok() || kept->id != *id) backend.checkpoint_files.remove(*id, kOriginId);
+  const auto kept = keep_with_origin(backend, record, *loaded, target);
   if (!kept.ok()) return kept.status();
   if (kept->id != *id) return show_made_before(backend, simulation_name(kept->id), request.start());
   const auto epoch = static_cast<uint64_t>(record.create_time_us);
@@ -155,7 +175,7 @@ absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const Princip
   const auto& session = *found;
   if (session == nullptr) {
     const auto record = backend.store.get_simulation(*simulation);
-    return record.ok() ? no_session_for("checkpoint", *record) : record.status();
+    return record.ok() ? no_session_for(backend, "checkpoint", *record) : record.status();
   }
   const auto record =
       await<absl::StatusOr<CheckpointRecord>>([&](auto reply) { session->checkpoint(*id, key, std::move(reply)); });

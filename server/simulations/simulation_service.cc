@@ -12,6 +12,7 @@
 #include "server/entry/unary.h"
 #include "server/simulations/checkpoint_calls.h"
 #include "server/simulations/tissue_deck.h"
+#include "server/store/record_names.h"
 #include "server/wire/etag.h"
 #include "server/wire/field_mask.h"
 #include "server/wire/names.h"
@@ -73,8 +74,8 @@ absl::Status answer_without_session(Backend& backend, const SimulationRecord& re
                                     const RequestKey& key, v1::Simulation& response) {
   const auto earlier = backend.store.find_request(key);
   if (!earlier.ok()) return earlier.status();
-  if (!earlier->has_value()) return no_session_for(what, record);
-  response = to_simulation(record, nullptr);
+  if (!earlier->has_value()) return no_session_for(backend, what, record);
+  response = show_without_session(backend, record);
   return absl::OkStatus();
 }
 
@@ -155,7 +156,7 @@ Reactor* SimulationService::GetSimulation(Context* context, const v1::GetSimulat
     if (!id.ok()) return id.status();
     if (!masked.ok()) return masked;
     const auto record = backend_.store.get_simulation(*id);
-    if (record.ok()) *response = to_simulation(*record, nullptr);
+    if (record.ok()) *response = show_without_session(backend_, *record);
     apply_field_mask(request->read_mask(), *response);
     return record.status();
   });
@@ -171,9 +172,11 @@ Reactor* SimulationService::ListSimulations(Context* context, const v1::ListSimu
     const auto records = backend_.store.list_simulations(call_of(context).principal.scope, one_more(*page));
     if (!records.ok()) return records.status();
     response->set_next_page_token(fill_page("simulations", *page, *records, [&](const SimulationRecord& record) {
+      if (record.is_damaged) return add_unreachable(simulation_name(record.id), *response);
       const auto session = backend_.sessions.find(record.id);
       const SessionView view = session != nullptr ? session->cached_view() : SessionView{};
-      *response->add_simulations() = to_simulation(record, session != nullptr ? &view : nullptr);
+      *response->add_simulations() =
+          session != nullptr ? to_simulation(record, &view) : show_without_session(backend_, record);
       apply_field_mask(mask, *response->mutable_simulations()->rbegin());
     }));
     return absl::OkStatus();
@@ -273,6 +276,7 @@ Reactor* SimulationService::ListCheckpoints(Context* context, const v1::ListChec
     const auto records = backend_.store.list_checkpoints(*id, one_more(*page));
     if (!records.ok()) return records.status();
     response->set_next_page_token(fill_page(collection, *page, *records, [&](const CheckpointRecord& record) {
+      if (record.is_damaged) return add_unreachable(checkpoint_name(record.simulation, record.id), *response);
       *response->add_checkpoints() = to_checkpoint(record);
     }));
     return absl::OkStatus();
@@ -284,8 +288,10 @@ Reactor* SimulationService::DeleteCheckpoint(Context* context, const v1::DeleteC
   return answer(context, request, [&]() -> absl::Status {
     const auto parts = parse_checkpoint_name(request->name(), "name");
     if (!parts.ok()) return parts.status();
-    if (auto done = backend_.store.delete_checkpoint(parts->simulation, parts->id); !done.ok()) return done;
-    backend_.checkpoint_files.remove(parts->simulation, parts->id);
+    const absl::Status done =
+        backend_.reserve.spend([&] { return backend_.store.delete_checkpoint(parts->simulation, parts->id); });
+    if (!done.ok()) return done;
+    backend_.temporary_files.remove_deleted();
     return absl::OkStatus();
   });
 }

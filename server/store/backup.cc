@@ -14,8 +14,9 @@
 #include "core/base/hash.h"
 #include "server/store/data_directory.h"
 #include "server/store/durable_file.h"
-#include "server/store/schema.h"
+#include "server/store/kept_files.h"
 #include "server/store/sqlite.h"
+#include "server/store/store_opening.h"
 
 namespace lipofill::server {
 namespace {
@@ -23,6 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr char kDatabase[] = "lipofill.sqlite";
 constexpr char kSums[] = "SHA256SUMS";
+constexpr char kDamaged[] = "DAMAGED";
 constexpr uint64_t kMaxSumsBytes = uint64_t{256} << 20;
 constexpr std::streamsize kChunk = 1 << 20;
 
@@ -70,28 +72,16 @@ class Staging {
   std::vector<std::string> linked_;
 };
 
-absl::StatusOr<std::vector<std::string>> files_of(Database& database) {
-  std::vector<std::string> paths;
-  for (const char* sql :
-       {"SELECT 'scans/' || CAST(patient AS TEXT) || '/' || CAST(id AS TEXT) FROM scans",
-        "SELECT 'checkpoints/' || CAST(simulation AS TEXT) || '/' || CAST(id AS TEXT) FROM checkpoints"}) {
-    Query query(database, sql);
-    while (query.next()) paths.push_back(query.text(0));
-    if (!query.status().ok()) return query.status();
-  }
-  return paths;
-}
-
 /// Links the files with the daemon's writes held up, so that no file goes whose record is in the
 /// reader's view of the database.
 absl::Status link_files(Database& writer, Database& reader, const fs::path& data, Staging& staging) {
   const Transaction hold(writer);
   if (!hold.status().ok()) return hold.status();
   if (absl::Status begun = reader.execute("BEGIN"); !begun.ok()) return begun;
-  const auto paths = files_of(reader);
-  if (!paths.ok()) return paths.status();
-  for (const std::string& path : *paths) {
-    if (absl::Status linked = staging.link(data, path); !linked.ok()) return linked;
+  const auto files = list_kept_files(reader);
+  if (!files.ok()) return files.status();
+  for (const KeptFile& file : *files) {
+    if (absl::Status linked = staging.link(data, file.path); !linked.ok()) return linked;
   }
   return absl::OkStatus();
 }
@@ -129,6 +119,12 @@ std::string to_text(const Sums& sums) {
   return text;
 }
 
+std::string to_text(const std::vector<Damage>& damages) {
+  std::string text;
+  for (const Damage& damage : damages) absl::StrAppend(&text, damage.name, ": ", damage.what, "\n");
+  return text;
+}
+
 /// Reads the sums. DATA_LOSS for a line that is none, or a path that leads elsewhere.
 absl::StatusOr<Sums> read_sums(const fs::path& root) {
   const auto text = read_whole_file(root / kSums, kMaxSumsBytes);
@@ -161,6 +157,17 @@ absl::Status check_sums(const fs::path& root, const Sums& sums) {
   return absl::OkStatus();
 }
 
+/// Checks records and files of a copy against what was written.
+absl::Status look_for_damage(const fs::path& root, const fs::path& path, BackupReport& report) {
+  const auto database = Database::open(path.string());
+  if (!database.ok()) return database.status();
+  Verification found;
+  absl::Status looked = verify_records(**database, path.string(), found, [](const Verification&) {});
+  if (looked.ok()) looked = verify_files(**database, root, nullptr, found, [](const Verification&) {});
+  report.damages = std::move(found.damages);
+  return looked;
+}
+
 absl::Status fill(const fs::path& data, const fs::path& partial, const BackupProgress& progress, BackupReport& report) {
   const auto reader = Database::open((data / kDatabase).string());
   if (!reader.ok()) return reader.status();
@@ -181,6 +188,11 @@ absl::Status fill(const fs::path& data, const fs::path& partial, const BackupPro
     if (!sum.ok()) return sum.status();
     sums[path] = *sum;
     progress(report);
+  }
+  if (absl::Status looked = look_for_damage(partial, partial / kDatabase, report); !looked.ok()) return looked;
+  if (!report.damages.empty()) {
+    const absl::Status named = write_durably(partial / kDamaged, to_text(report.damages));
+    if (!named.ok()) return named;
   }
   return write_durably(partial / kSums, to_text(sums));
 }
@@ -212,11 +224,7 @@ absl::StatusOr<BackupReport> restore_store(const fs::path& source, const fs::pat
   if (!sums.ok()) return sums.status();
   const auto directory = DataDirectory::open(data);
   if (!directory.ok()) return directory.status();
-  std::error_code error;
-  if (fs::exists(directory->database(), error)) {
-    return absl::FailedPreconditionError(
-        absl::StrCat(data.string(), " has a store; restore into an empty directory, then take that one"));
-  }
+  if (absl::Status empty = check_holds_no_store(*directory); !empty.ok()) return empty;
   if (absl::Status whole = check_sums(source, *sums); !whole.ok()) return whole;
   BackupReport report;
   const auto copy = [&](const std::string& path, const fs::path& target) -> absl::Status {
@@ -233,6 +241,8 @@ absl::StatusOr<BackupReport> restore_store(const fs::path& source, const fs::pat
   // The database comes last and in one go: without it there is no store.
   const fs::path draft = data / absl::StrCat(kDatabase, ".new");
   if (absl::Status copied = copy(kDatabase, draft); !copied.ok()) return copied;
+  if (absl::Status looked = look_for_damage(data, draft, report); !looked.ok()) return looked;
+  std::error_code error;
   fs::rename(draft, directory->database(), error);
   if (error) return file_error(absl::StrCat("cannot make ", directory->database().string()), error.value());
   return report;

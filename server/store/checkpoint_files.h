@@ -56,13 +56,7 @@ class CheckpointFiles {
   void remove(const std::string& simulation, const std::string& checkpoint) const {
     files_.remove(simulation, checkpoint);
   }
-  void remove_simulation(const std::string& simulation) const { files_.remove_owner(simulation); }
-  /// Removes files nobody knows: what a crash between two steps left. Returns how many.
-  int sweep(const OwnedFiles::Known& known) const { return files_.sweep(known); }
-  /// The same for the files of one simulation.
-  int sweep_simulation(const std::string& simulation, const OwnedFiles::Known& known) const {
-    return files_.sweep_owner(simulation, known);
-  }
+  const OwnedFiles& files() const { return files_; }
 
  private:
   explicit CheckpointFiles(OwnedFiles files) : files_(std::move(files)) {}

@@ -17,7 +17,12 @@ class DataDirectory {
   DataDirectory& operator=(DataDirectory&&) = delete;
   ~DataDirectory();
 
+  const std::filesystem::path& path() const { return path_; }
   std::filesystem::path database() const { return path_ / "lipofill.sqlite"; }
+  /// Holds room on the medium, see SpaceReserve.
+  std::filesystem::path reserve() const { return path_ / "reserve"; }
+  /// Says which store the directory belongs to.
+  std::filesystem::path identity() const { return path_ / "store-id"; }
   std::filesystem::path scans() const { return path_ / "scans"; }
   std::filesystem::path checkpoints() const { return path_ / "checkpoints"; }
 

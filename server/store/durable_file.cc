@@ -74,10 +74,15 @@ absl::Status flush_to_medium(const fs::path& path) {
   return absl::OkStatus();
 }
 
-absl::Status write_durably(const fs::path& path, std::string_view bytes) {
-  if (auto made = make_directory(path.parent_path()); !made.ok()) return made;
+fs::path draft_of(const fs::path& path) {
   fs::path draft = path;
   draft += ".draft";
+  return draft;
+}
+
+absl::Status write_durably(const fs::path& path, std::string_view bytes) {
+  if (auto made = make_directory(path.parent_path()); !made.ok()) return made;
+  const fs::path draft = draft_of(path);
   absl::Status done = write_draft(draft, bytes);
   if (done.ok() && ::rename(draft.c_str(), path.c_str()) != 0) done = file_error("cannot put a file in place", errno);
   if (!done.ok()) {

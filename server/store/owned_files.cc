@@ -1,5 +1,6 @@
 #include "server/store/owned_files.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -20,33 +21,21 @@ void OwnedFiles::remove(const std::string& owner, const std::string& name) const
   fs::remove(directory(owner), ignored);  // only when it is empty
 }
 
-void OwnedFiles::remove_owner(const std::string& owner) const {
-  std::error_code ignored;
-  fs::remove_all(directory(owner), ignored);
-}
-
-int OwnedFiles::sweep(const Known& known) const {
-  std::vector<std::string> owners;
+std::vector<fs::path> OwnedFiles::list_unknown(const Known& known) const {
+  std::vector<fs::path> unknown;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(root_, error)) {
-    if (entry.is_directory()) owners.push_back(entry.path().filename().string());
+  for (const auto& owner : fs::directory_iterator(root_, error)) {
+    if (!owner.is_directory(error)) {
+      unknown.push_back(owner.path().filename());
+      continue;
+    }
+    for (const auto& file : fs::directory_iterator(owner.path(), error)) {
+      if (known(owner.path().filename(), file.path().filename())) continue;
+      unknown.push_back(owner.path().filename() / file.path().filename());
+    }
   }
-  int removed = 0;
-  for (const std::string& owner : owners) removed += sweep_owner(owner, known);
-  return removed;
-}
-
-int OwnedFiles::sweep_owner(const std::string& owner, const Known& known) const {
-  std::vector<std::string> unknown;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(directory(owner), error)) {
-    const std::string name = entry.path().filename().string();
-    if (!known(owner, name)) unknown.push_back(name);
-  }
-  for (const std::string& name : unknown) remove(owner, name);
-  std::error_code ignored;
-  fs::remove(directory(owner), ignored);  // only when it is empty
-  return static_cast<int>(unknown.size());
+  std::sort(unknown.begin(), unknown.end());
+  return unknown;
 }
 
 }  // namespace lipofill::server

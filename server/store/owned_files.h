@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 
@@ -20,13 +21,10 @@ class OwnedFiles {
   std::filesystem::path file(const std::string& owner, const std::string& name) const { return root_ / owner / name; }
 
   void remove(const std::string& owner, const std::string& name) const;
-  void remove_owner(const std::string& owner) const;
 
   using Known = std::function<bool(const std::string& owner, const std::string& name)>;
-  /// Removes files nobody knows: what a crash between two steps left. Returns how many.
-  int sweep(const Known& known) const;
-  /// The same for the files of one owner.
-  int sweep_owner(const std::string& owner, const Known& known) const;
+  /// The files that nobody knows, as paths from the root.
+  std::vector<std::filesystem::path> list_unknown(const Known& known) const;
 
  private:
   explicit OwnedFiles(std::filesystem::path root) : root_(std::move(root)) {}

@@ -18,6 +18,7 @@ struct PatientRecord {
   std::map<std::string, std::string> labels;
   int64_t create_time_us = 0;
   std::string tenant = kLocalTenant;
+  bool is_damaged = false;  ///< in a list: it is not what was written, and no more than its id is told
 };
 
 struct ScanRecord {
@@ -31,6 +32,7 @@ struct ScanRecord {
   bool complete = false;
   std::string report_message;
   int64_t create_time_us = 0;
+  bool is_damaged = false;  ///< in a list: it is not what was written, and no more than its id is told
 };
 
 struct ModelRecord {
@@ -41,7 +43,8 @@ struct ModelRecord {
   std::string spec_message;
   std::string report_message;
   int64_t create_time_us = 0;
-  std::string bone_scan;  ///< id of the scan of the bone it was built from, empty without one
+  std::string bone_scan;    ///< id of the scan of the bone it was built from, empty without one
+  bool is_damaged = false;  ///< in a list: it is not what was written, and no more than its id is told
 };
 
 enum class SimulationState { kReady = 1, kRunning, kPaused, kSettled, kFinished, kStopped, kFailed };
@@ -67,6 +70,7 @@ struct SimulationRecord {
   std::string origin = {};    ///< simulations/{simulation}/checkpoints/{checkpoint} it began from; empty: from its plan
   uint64_t last_command = 0;  ///< number of the last command it took; given by the store
   std::string tenant = kLocalTenant;
+  bool is_damaged = false;  ///< in a list: it is not what was written, and no more than its id is told
 };
 
 /// A client's command. Those that set the state are told by it: start and resume RUNNING, pause
@@ -97,11 +101,12 @@ struct CheckpointRecord {
   uint64_t step = 0;
   double time_s = 0.0;        ///< simulated
   double wall_s = 0.0;        ///< spent RUNNING until then
-  uint64_t last_command = 0;  ///< number of the last command that is in the state; given by the store
+  uint64_t last_command = 0;  ///< number of the last command that is in the state; 0: the store gives the last it has
   uint64_t size_bytes = 0;    ///< is that of the file
   std::string sha256;         ///< is computed from the file's body
   std::string state_hash;
   int64_t create_time_us = 0;
+  bool is_damaged = false;  ///< in a list: it is not what was written, and no more than its id is told
 };
 
 /// The data that a viewer of an ended simulation is shown.
@@ -115,6 +120,18 @@ struct SeriesChunk {
   uint64_t first_step = 0;
   uint64_t last_step = 0;
   std::string rows_message;
+};
+
+/// What tells one store from another, and an older state of it from a newer one.
+struct StoreIdentity {
+  std::string id;       ///< 32 hexadecimal digits
+  uint64_t starts = 0;  ///< how often it was opened to be served
+};
+
+/// A file that may be removed, by its path below the data directory.
+struct TemporaryFile {
+  std::string path;       ///< scans/{patient}/{scan} or checkpoints/{simulation}/{checkpoint}
+  bool is_draft = false;  ///< is being written; else its record was deleted
 };
 
 /// Makes a create idempotent: the same method and id again, by the same tenant, give the resource

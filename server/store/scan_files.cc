@@ -1,17 +1,25 @@
 #include "server/store/scan_files.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
 #include "absl/strings/str_cat.h"
+#include "core/base/hash.h"
 #include "server/store/durable_file.h"
+#include "server/store/record_names.h"
 
 namespace lipofill::server {
 namespace fs = std::filesystem;
+namespace {
+
+/// Far above what is taken in: a file that grew so large is none of ours.
+constexpr uint64_t kMaxScanBytes = uint64_t{1} << 30;
+
+}  // namespace
 
 absl::StatusOr<ScanFiles> ScanFiles::open(const fs::path& root) {
   auto files = OwnedFiles::open(root);
@@ -23,6 +31,12 @@ uint64_t ScanFiles::size(const std::string& patient, const std::string& scan) co
   std::error_code error;
   const auto bytes = fs::file_size(files_.file(patient, scan), error);
   return error ? 0 : bytes;
+}
+
+int64_t ScanFiles::last_write_us(const std::string& patient, const std::string& scan) const {
+  struct stat about {};
+  if (::stat(files_.file(patient, scan).c_str(), &about) != 0) return 0;
+  return int64_t{about.st_mtim.tv_sec} * 1'000'000 + about.st_mtim.tv_nsec / 1'000;
 }
 
 absl::Status ScanFiles::write(const std::string& patient, const std::string& scan, uint64_t offset,
@@ -55,12 +69,27 @@ absl::Status ScanFiles::flush(const std::string& patient, const std::string& sca
 }
 
 absl::StatusOr<std::string> ScanFiles::read(const std::string& patient, const std::string& scan) const {
-  std::ifstream file(files_.file(patient, scan), std::ios::binary);
-  std::string bytes(size(patient, scan), '\0');
-  if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
-    return absl::DataLossError(absl::StrCat("the bytes of patients/", patient, "/scans/", scan, " cannot be read"));
+  const std::string name = scan_name(patient, scan);
+  const fs::path path = files_.file(patient, scan);
+  auto bytes = read_whole_file(path, kMaxScanBytes);
+  if (bytes.ok()) return bytes;
+  if (absl::IsNotFound(bytes.status())) {
+    return absl::DataLossError(
+        absl::StrCat(name, " is damaged: its file ", path.string(), " is missing; put it back from a backup"));
   }
-  return bytes;
+  return absl::Status(bytes.status().code(), absl::StrCat(name, ": ", std::string(bytes.status().message())));
+}
+
+absl::StatusOr<std::string> ScanFiles::read_whole(const std::string& patient, const std::string& scan,
+                                                  const std::string& sha256) const {
+  auto bytes = read(patient, scan);
+  if (!bytes.ok()) return bytes;
+  Hasher hasher;
+  hasher.add_bytes(bytes->data(), bytes->size());
+  if (hasher.hex_digest() == sha256) return bytes;
+  return absl::DataLossError(absl::StrCat(scan_name(patient, scan), " is damaged: its file is not what was uploaded, ",
+                                          "the SHA-256 of its ", bytes->size(),
+                                          " bytes is another; put it back from a backup"));
 }
 
 }  // namespace lipofill::server

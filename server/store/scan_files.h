@@ -19,17 +19,23 @@ class ScanFiles {
 
   /// Bytes on disk, 0 where there is no file.
   uint64_t size(const std::string& patient, const std::string& scan) const;
+  /// When bytes were last written [us since 1970]; 0 where there is no file.
+  int64_t last_write_us(const std::string& patient, const std::string& scan) const;
   /// Writes at an offset, making the file where there is none. RESOURCE_EXHAUSTED when the disk is
   /// full.
   absl::Status write(const std::string& patient, const std::string& scan, uint64_t offset,
                      std::string_view bytes) const;
   /// Waits until all that was written to a scan is on the medium.
   absl::Status flush(const std::string& patient, const std::string& scan) const;
+  /// Reads what there is of a scan. DATA_LOSS without a file, UNAVAILABLE when it cannot be read at
+  /// this moment.
   absl::StatusOr<std::string> read(const std::string& patient, const std::string& scan) const;
+  /// Reads a scan that is complete. DATA_LOSS also when the file is not the one with this hash,
+  /// which was uploaded.
+  absl::StatusOr<std::string> read_whole(const std::string& patient, const std::string& scan,
+                                         const std::string& sha256) const;
   void remove(const std::string& patient, const std::string& scan) const { files_.remove(patient, scan); }
-  void remove_patient(const std::string& patient) const { files_.remove_owner(patient); }
-  /// Removes files nobody knows: what a crash between two steps left. Returns how many.
-  int sweep(const OwnedFiles::Known& known) const { return files_.sweep(known); }
+  const OwnedFiles& files() const { return files_; }
 
  private:
   explicit ScanFiles(OwnedFiles files) : files_(std::move(files)) {}

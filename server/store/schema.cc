@@ -3,7 +3,9 @@
 #include <cstdint>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "server/store/row_sums.h"
 
 namespace lipofill::server {
 namespace {
@@ -83,6 +85,24 @@ CREATE INDEX patients_by_tenant ON patients(tenant, id);
 CREATE INDEX simulations_by_tenant ON simulations(tenant, id);
 )";
 
+/// 5: the store has an id; rows have sums (make_row_sums()); files that may be removed are
+/// recorded: those being written, of which there is no record yet, and those whose record was
+/// deleted.
+constexpr char kFromVersion4[] = R"(
+CREATE TABLE store (id BLOB NOT NULL, starts INTEGER NOT NULL);
+INSERT INTO store SELECT CAST(lower(hex(randomblob(16))) AS BLOB), 0;
+CREATE TABLE temporary_files (path BLOB PRIMARY KEY, is_draft INTEGER NOT NULL) WITHOUT ROWID;
+CREATE TRIGGER files_of_scans AFTER DELETE ON scans BEGIN
+  INSERT OR REPLACE INTO temporary_files
+    VALUES (CAST('scans/' || CAST(OLD.patient AS TEXT) || '/' || CAST(OLD.id AS TEXT) AS BLOB), 0); END;
+CREATE TRIGGER files_of_checkpoints AFTER DELETE ON checkpoints BEGIN
+  INSERT OR REPLACE INTO temporary_files
+    VALUES (CAST('checkpoints/' || CAST(OLD.simulation AS TEXT) || '/' || CAST(OLD.id AS TEXT) AS BLOB), 0); END;
+CREATE TRIGGER recorded_checkpoints AFTER INSERT ON checkpoints BEGIN
+  DELETE FROM temporary_files
+    WHERE path = CAST('checkpoints/' || CAST(NEW.simulation AS TEXT) || '/' || CAST(NEW.id AS TEXT) AS BLOB); END;
+)";
+
 absl::StatusOr<int64_t> read_pragma(Database& database, const char* sql) {
   Query query(database, sql);
   const int64_t value = query.next() ? query.integer(0) : 0;
@@ -108,16 +128,49 @@ absl::Status damaged(const std::string& path, const std::string& what) {
                    "and put that in its place; or move it away to begin with an empty store"));
 }
 
-}  // namespace
+/// The schema is rows of a table too, which may rot: statements must understand it, and the
+/// triggers must be those that were made.
+absl::Status check_schema(Database& database, const std::string& path) {
+  for (const SummedTable& table : kSummedTables) {
+    Query columns(database, absl::StrCat("SELECT ", table.columns, ", sum FROM ", table.name, " LIMIT 0").c_str());
+    if (!columns.run().ok()) return damaged(path, std::string(columns.status().message()));
+  }
+  const std::string expected = absl::StrCat(kFromVersion4, make_row_sums());
+  Query triggers(database, "SELECT name, sql FROM sqlite_master WHERE type = 'trigger'");
+  size_t n = 0;
+  for (; triggers.next(); ++n) {
+    if (!absl::StrContains(expected, triggers.text(1))) {
+      return damaged(path, absl::StrCat("the trigger ", triggers.text(0), " is not what was made"));
+    }
+  }
+  if (!triggers.status().ok()) return triggers.status();
+  constexpr size_t kTriggersOfFiles = 3;
+  constexpr size_t kTriggersOfSums = 3;
+  const size_t n_made = kTriggersOfFiles + kTriggersOfSums * kSummedTables.size();
+  return n == n_made ? absl::OkStatus()
+                     : damaged(path, absl::StrCat("it has ", n, " triggers, ", n_made, " were made"));
+}
 
-absl::Status check_database(Database& database, const std::string& path) {
-  Query check(database, "PRAGMA quick_check(1)");
+/// "ok", or the first thing that does not fit.
+absl::StatusOr<std::string> check_integrity(Database& database, const std::string& path) {
+  Query check(database, "PRAGMA integrity_check(1)");
   const std::string found = check.next() ? check.text(0) : "";
   if (absl::IsDataLoss(check.status())) return damaged(path, std::string(check.status().message()));
   if (!check.status().ok()) {
     return absl::Status(check.status().code(), absl::StrCat(path, ": ", check.status().message()));
   }
-  return found == "ok" ? absl::OkStatus() : damaged(path, found);
+  return found;
+}
+
+}  // namespace
+
+absl::Status check_database(Database& database, const std::string& path) {
+  auto found = check_integrity(database, path);
+  if (!found.ok() || *found == "ok") return found.status();
+  // Indexes can be made again from their tables, whose rows have sums.
+  if (database.execute("REINDEX").ok()) found = check_integrity(database, path);
+  if (!found.ok()) return found.status();
+  return *found == "ok" ? absl::OkStatus() : damaged(path, *found);
 }
 
 absl::Status bring_up_to_date(Database& database, const std::string& path) {
@@ -126,7 +179,8 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   const auto tables = read_pragma(database, "SELECT count(*) FROM sqlite_master");
   if (!tables.ok()) return tables.status();
   if (*version == 0 && *tables == 0)
-    return change_schema(database, absl::StrCat(kSchema, kResumeTables, kTenantIndexes));
+    return change_schema(database,
+                         absl::StrCat(kSchema, kResumeTables, kTenantIndexes, kFromVersion4, make_row_sums()));
   const auto application = read_pragma(database, "PRAGMA application_id");
   if (!application.ok()) return application.status();
   if (*application != kApplicationId) {
@@ -140,7 +194,9 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   if (*version < 2) changes += kFromVersion1;
   if (*version < 3) absl::StrAppend(&changes, kFromVersion2, kResumeTables);
   if (*version < 4) absl::StrAppend(&changes, kFromVersion3, kTenantIndexes);
-  return changes.empty() ? absl::OkStatus() : change_schema(database, changes);
+  if (*version < 5) absl::StrAppend(&changes, kFromVersion4, make_row_sums());
+  if (changes.empty()) return check_schema(database, path);
+  return change_schema(database, changes);
 }
 
 }  // namespace lipofill::server

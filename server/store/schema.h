@@ -8,11 +8,11 @@
 namespace lipofill::server {
 
 /// Version of the schema that this program writes, PRAGMA user_version.
-inline constexpr int kSchemaVersion = 4;
+inline constexpr int kSchemaVersion = 5;
 
-/// Checks the database. DATA_LOSS saying what is wrong and what can be done when its pages do not
-/// fit together. Checked by tests/unit/server/store/schema_test.cc and
-/// tests/integration/service/fault_test.cc.
+/// Checks the database, and makes indexes that do not go with their tables again. DATA_LOSS saying
+/// what is wrong and what can be done when its pages do not fit together. Checked by
+/// tests/unit/server/store/schema_test.cc and tests/integration/service/fault_test.cc.
 absl::Status check_database(Database& database, const std::string& path);
 
 /// Makes the tables of an empty database, or takes one of an earlier version to this one, step by

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/store/durable_file.h"
+#include "server/store/row_sum_function.h"
 
 namespace lipofill::server {
 
@@ -79,6 +80,7 @@ absl::StatusOr<std::unique_ptr<Database>> Database::open(const std::string& path
   }
   sqlite3_extended_result_codes(handle, 1);
   sqlite3_busy_timeout(handle, 2000);
+  if (const int added = add_row_sum_function(handle); added != SQLITE_OK) return database->error(added);
   return database;
 }
 
@@ -123,6 +125,8 @@ absl::Status Database::error(int code) const {
   const std::string message = absl::StrCat("store: ", sqlite3_errmsg(handle_));
   switch (code & 0xff) {
     case SQLITE_CONSTRAINT:
+      // A trigger of ours found that a record is not what was written.
+      if (code == SQLITE_CONSTRAINT_TRIGGER) return absl::DataLossError(message);
       return absl::AlreadyExistsError(message);
     case SQLITE_NOTADB:
     case SQLITE_CORRUPT:

@@ -44,6 +44,7 @@ class Query {
   double real(int column) const;
   uint64_t unsigned_integer(int column) const { return static_cast<uint64_t>(integer(column)); }
   std::string text(int column) const;  ///< text or blob
+  bool is_true(int column) const { return integer(column) != 0; }
 
  private:
   void bind_one(int index, int64_t value);

@@ -1,13 +1,10 @@
 #include "absl/strings/str_cat.h"
 #include "server/store/record_names.h"
+#include "server/store/row_sums.h"
 #include "server/store/sqlite_store.h"
 
 namespace lipofill::server {
 namespace {
-
-#define CHECKPOINT_COLUMNS                                                                                \
-  "simulation, id, kind, on_course, step, time_s, wall_s, last_command, size_bytes, sha256, state_hash, " \
-  "create_time_us"
 
 CheckpointRecord checkpoint_of(const Query& row) {
   CheckpointRecord checkpoint;
@@ -24,6 +21,16 @@ CheckpointRecord checkpoint_of(const Query& row) {
   checkpoint.state_hash = row.text(10);
   checkpoint.create_time_us = row.integer(11);
   return checkpoint;
+}
+
+/// A row of a list: one that is damaged is named and no more.
+CheckpointRecord listed_checkpoint_of(const Query& row) {
+  if (row.is_true(12)) return checkpoint_of(row);
+  CheckpointRecord damaged;
+  damaged.simulation = row.text(0);
+  damaged.id = row.text(1);
+  damaged.is_damaged = true;
+  return damaged;
 }
 
 }  // namespace
@@ -46,13 +53,15 @@ absl::StatusOr<CheckpointRecord> SqliteStore::create_checkpoint(const Checkpoint
 
 absl::Status SqliteStore::write_checkpoint(const CheckpointRecord& checkpoint) {
   Query insert(*database_, "INSERT INTO checkpoints (" CHECKPOINT_COLUMNS
-                           ") SELECT ?1, ?2, ?3, 1, ?4, ?5, ?6, coalesce(max(number), 0), ?7, ?8, ?9, ?10 "
+                           ") SELECT ?1, ?2, ?3, 1, ?4, ?5, ?6, "
+                           "CASE WHEN ?11 > 0 THEN ?11 ELSE coalesce(max(number), 0) END, ?7, ?8, ?9, ?10 "
                            "FROM simulation_commands WHERE simulation = ?1");
-  const absl::Status done = insert
-                                .bind(checkpoint.simulation, checkpoint.id, static_cast<int>(checkpoint.kind),
-                                      checkpoint.step, checkpoint.time_s, checkpoint.wall_s, checkpoint.size_bytes,
-                                      checkpoint.sha256, checkpoint.state_hash, checkpoint.create_time_us)
-                                .run();
+  const absl::Status done =
+      insert
+          .bind(checkpoint.simulation, checkpoint.id, static_cast<int>(checkpoint.kind), checkpoint.step,
+                checkpoint.time_s, checkpoint.wall_s, checkpoint.size_bytes, checkpoint.sha256, checkpoint.state_hash,
+                checkpoint.create_time_us, checkpoint.last_command)
+          .run();
   if (!absl::IsAlreadyExists(done)) return done;
   return absl::AlreadyExistsError(absl::StrCat(checkpoint_name(checkpoint.simulation, checkpoint.id), " exists"));
 }
@@ -63,32 +72,39 @@ absl::StatusOr<CheckpointRecord> SqliteStore::get_checkpoint(const std::string& 
 }
 
 absl::StatusOr<CheckpointRecord> SqliteStore::read_checkpoint(const std::string& simulation, const std::string& id) {
-  Query query(*database_, "SELECT " CHECKPOINT_COLUMNS " FROM checkpoints WHERE simulation = ? AND id = ?");
-  if (query.bind(simulation, id).next()) return checkpoint_of(query);
-  if (!query.status().ok()) return query.status();
-  return absl::NotFoundError(absl::StrCat("there is no ", checkpoint_name(simulation, id)));
+  Query query(*database_, "SELECT " CHECKPOINT_COLUMNS ", " IS_WHOLE(
+                              "checkpoints", CHECKPOINT_COLUMNS) " FROM checkpoints WHERE simulation = ? AND id = ?");
+  if (!query.bind(simulation, id).next()) {
+    if (!query.status().ok()) return query.status();
+    return absl::NotFoundError(absl::StrCat("there is no ", checkpoint_name(simulation, id)));
+  }
+  if (!query.is_true(12)) return damaged_record(checkpoint_name(simulation, id));
+  return checkpoint_of(query);
 }
 
 absl::StatusOr<std::vector<CheckpointRecord>> SqliteStore::list_checkpoints(const std::string& simulation,
                                                                             const Page& page) {
   const std::lock_guard lock(mutex_);
   if (const auto known = read_simulation(simulation); !known.ok()) return known.status();
-  Query query(*database_,
-              "SELECT " CHECKPOINT_COLUMNS " FROM checkpoints WHERE simulation = ? AND id > ? ORDER BY id LIMIT ?");
+  Query query(
+      *database_,
+      "SELECT " CHECKPOINT_COLUMNS ", " IS_WHOLE(
+          "checkpoints", CHECKPOINT_COLUMNS) " FROM checkpoints WHERE simulation = ? AND id > ? ORDER BY id LIMIT ?");
   query.bind(simulation, page.after, page.size);
   std::vector<CheckpointRecord> checkpoints;
-  while (query.next()) checkpoints.push_back(checkpoint_of(query));
+  while (query.next()) checkpoints.push_back(listed_checkpoint_of(query));
   if (!query.status().ok()) return query.status();
   return checkpoints;
 }
 
 absl::Status SqliteStore::delete_checkpoint(const std::string& simulation, const std::string& id) {
   return transact([&]() -> absl::Status {
+    // What is damaged can go.
     const auto checkpoint = read_checkpoint(simulation, id);
-    if (!checkpoint.ok()) return checkpoint.status();
+    if (!checkpoint.ok() && !absl::IsDataLoss(checkpoint.status())) return checkpoint.status();
     const auto owner = read_simulation(simulation);
     if (!owner.ok()) return owner.status();
-    if (checkpoint->kind == CheckpointKind::kOrigin && !has_ended(owner->state)) {
+    if (checkpoint.ok() && checkpoint->kind == CheckpointKind::kOrigin && !has_ended(owner->state)) {
       return absl::FailedPreconditionError(absl::StrCat(simulation_name(simulation), " began from ",
                                                         checkpoint_name(simulation, id), " and has not ended"));
     }
@@ -101,7 +117,8 @@ absl::Status SqliteStore::delete_checkpoint(const std::string& simulation, const
 absl::Status SqliteStore::prune_checkpoints(const std::string& simulation, int newest) {
   const std::lock_guard lock(mutex_);
   Query remove(*database_,
-               "DELETE FROM checkpoints WHERE simulation = ?1 AND kind = ?2 AND id NOT IN "
+               "DELETE FROM checkpoints WHERE simulation = ?1 AND kind = ?2 AND " IS_WHOLE(
+                   "checkpoints", CHECKPOINT_COLUMNS) " AND id NOT IN "
                "(SELECT id FROM checkpoints WHERE simulation = ?1 AND kind = ?2 AND on_course "
                "ORDER BY last_command DESC, step DESC, create_time_us DESC LIMIT ?3)");
   return remove.bind(simulation, static_cast<int>(CheckpointKind::kAutomatic), newest).run();

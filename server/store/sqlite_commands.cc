@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/store/record_names.h"
+#include "server/store/row_sums.h"
 #include "server/store/sqlite_store.h"
 
 namespace lipofill::server {
@@ -32,9 +33,9 @@ absl::StatusOr<bool> SqliteStore::append_command(const CommandRecord& command, c
 }
 
 absl::Status SqliteStore::write_command(const CommandRecord& command) {
-  Query insert(*database_,
-               "INSERT INTO simulation_commands SELECT ?1, coalesce(max(number), 0) + 1, ?2, ?3, ?4, 1, ?5 "
-               "FROM simulation_commands WHERE simulation = ?1");
+  Query insert(*database_, "INSERT INTO simulation_commands (" COMMAND_COLUMNS
+                           ") SELECT ?1, coalesce(max(number), 0) + 1, ?2, ?3, ?4, 1, ?5 "
+                           "FROM simulation_commands WHERE simulation = ?1");
   return insert
       .bind(command.simulation, static_cast<int>(command.kind), command.step, command.payload, command.create_time_us)
       .run();
@@ -49,11 +50,13 @@ absl::Status SqliteStore::write_state(const std::string& simulation, SimulationS
 absl::StatusOr<std::vector<CommandRecord>> SqliteStore::list_commands(const std::string& simulation) {
   const std::lock_guard lock(mutex_);
   Query query(*database_,
-              "SELECT number, kind, step, payload, create_time_us FROM simulation_commands "
+              "SELECT number, kind, step, payload, create_time_us, " IS_WHOLE(
+                  "simulation_commands", COMMAND_COLUMNS) " FROM simulation_commands "
               "WHERE simulation = ? AND on_course ORDER BY number");
   query.bind(simulation);
   std::vector<CommandRecord> commands;
   while (query.next()) {
+    if (!query.is_true(5)) return damaged_record(absl::StrCat(simulation_name(simulation), " (its commands)"));
     commands.push_back({simulation, query.unsigned_integer(0), static_cast<CommandKind>(query.integer(1)),
                         query.unsigned_integer(2), query.text(3), query.integer(4)});
   }

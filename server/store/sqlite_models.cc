@@ -1,14 +1,23 @@
 #include "absl/strings/str_cat.h"
 #include "server/store/record_names.h"
+#include "server/store/row_sums.h"
 #include "server/store/sqlite_store.h"
 
 namespace lipofill::server {
 namespace {
 
-#define MODEL_COLUMNS "patient, id, scan, content_hash, spec, report, create_time_us, bone_scan"
-
 ModelRecord model_of(const Query& row) {
   return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.text(5), row.integer(6), row.text(7)};
+}
+
+/// A row of a list: one that is damaged is named and no more.
+ModelRecord listed_model_of(const Query& row) {
+  if (row.is_true(8)) return model_of(row);
+  ModelRecord damaged;
+  damaged.patient = row.text(0);
+  damaged.id = row.text(1);
+  damaged.is_damaged = true;
+  return damaged;
 }
 
 absl::Status no_model(const std::string& patient, const std::string& id) {
@@ -43,19 +52,21 @@ absl::StatusOr<ModelRecord> SqliteStore::get_model(const std::string& patient, c
 }
 
 absl::StatusOr<ModelRecord> SqliteStore::read_model(const std::string& patient, const std::string& id) {
-  Query query(*database_, "SELECT " MODEL_COLUMNS " FROM models WHERE patient = ? AND id = ?");
-  if (query.bind(patient, id).next()) return model_of(query);
-  if (!query.status().ok()) return query.status();
-  return no_model(patient, id);
+  Query query(*database_, "SELECT " MODEL_COLUMNS
+                          ", " IS_WHOLE("models", MODEL_COLUMNS) " FROM models WHERE patient = ? AND id = ?");
+  if (!query.bind(patient, id).next()) return query.status().ok() ? no_model(patient, id) : query.status();
+  if (!query.is_true(8)) return damaged_record(model_name(patient, id));
+  return model_of(query);
 }
 
 absl::StatusOr<std::vector<ModelRecord>> SqliteStore::list_models(const std::string& patient, const Page& page) {
   const std::lock_guard lock(mutex_);
   if (const auto known = read_patient(patient); !known.ok()) return known.status();
-  Query query(*database_, "SELECT " MODEL_COLUMNS " FROM models WHERE patient = ? AND id > ? ORDER BY id LIMIT ?");
+  Query query(*database_, "SELECT " MODEL_COLUMNS ", " IS_WHOLE(
+                              "models", MODEL_COLUMNS) " FROM models WHERE patient = ? AND id > ? ORDER BY id LIMIT ?");
   query.bind(patient, page.after, page.size);
   std::vector<ModelRecord> models;
-  while (query.next()) models.push_back(model_of(query));
+  while (query.next()) models.push_back(listed_model_of(query));
   if (!query.status().ok()) return query.status();
   return models;
 }

@@ -1,5 +1,6 @@
 #include "absl/strings/str_cat.h"
 #include "server/store/record_names.h"
+#include "server/store/row_sums.h"
 #include "server/store/scope_query.h"
 #include "server/store/sqlite_store.h"
 
@@ -32,7 +33,7 @@ absl::Status SqliteStore::write_labels(const PatientRecord& patient) {
   Query clear(*database_, "DELETE FROM patient_labels WHERE patient = ?");
   absl::Status done = clear.bind(patient.id).run();
   for (const auto& [key, value] : patient.labels) {
-    Query insert(*database_, "INSERT INTO patient_labels VALUES (?, ?, ?)");
+    Query insert(*database_, "INSERT INTO patient_labels (" LABEL_COLUMNS ") VALUES (?, ?, ?)");
     done.Update(insert.bind(patient.id, key, value).run());
   }
   return done;
@@ -44,15 +45,21 @@ absl::StatusOr<PatientRecord> SqliteStore::get_patient(const std::string& id) {
 }
 
 absl::StatusOr<PatientRecord> SqliteStore::read_patient(const std::string& id) {
-  Query query(*database_, "SELECT display_name, create_time_us, tenant FROM patients WHERE id = ?");
+  Query query(*database_, "SELECT display_name, create_time_us, tenant, " IS_WHOLE(
+                              "patients", PATIENT_COLUMNS) " FROM patients WHERE id = ?");
   if (!query.bind(id).next()) {
     if (!query.status().ok()) return query.status();
     return no_patient(id);
   }
+  if (!query.is_true(3)) return damaged_record(patient_name(id));
   PatientRecord patient{id, query.text(0), {}, query.integer(1), query.text(2)};
-  Query labels(*database_, "SELECT key, value FROM patient_labels WHERE patient = ?");
+  Query labels(*database_, "SELECT key, value, " IS_WHOLE("patient_labels",
+                                                          LABEL_COLUMNS) " FROM patient_labels WHERE patient = ?");
   labels.bind(id);
-  while (labels.next()) patient.labels[labels.text(0)] = labels.text(1);
+  while (labels.next()) {
+    if (!labels.is_true(2)) return damaged_record(patient_name(id));
+    patient.labels[labels.text(0)] = labels.text(1);
+  }
   if (!labels.status().ok()) return labels.status();
   return patient;
 }
@@ -69,6 +76,11 @@ absl::StatusOr<std::vector<PatientRecord>> SqliteStore::list_patients(const Scop
   std::vector<PatientRecord> patients;
   for (const std::string& id : ids) {
     auto patient = read_patient(id);
+    if (absl::IsDataLoss(patient.status())) {
+      patient = PatientRecord();
+      patient->id = id;
+      patient->is_damaged = true;
+    }
     if (!patient.ok()) return patient.status();
     patients.push_back(*std::move(patient));
   }
@@ -77,9 +89,10 @@ absl::StatusOr<std::vector<PatientRecord>> SqliteStore::list_patients(const Scop
 
 absl::StatusOr<Owner> SqliteStore::owner_of_patient(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  Query query(*database_, "SELECT tenant FROM patients WHERE id = ?");
-  if (query.bind(id).next()) return Owner{query.text(0), id};
-  return query.status().ok() ? no_patient(id) : query.status();
+  Query query(*database_, "SELECT tenant, " IS_WHOLE("patients", PATIENT_COLUMNS) " FROM patients WHERE id = ?");
+  if (!query.bind(id).next()) return query.status().ok() ? no_patient(id) : query.status();
+  if (!query.is_true(1)) return damaged_record(patient_name(id));
+  return Owner{query.text(0), id};
 }
 
 absl::StatusOr<PatientRecord> SqliteStore::update_patient(const std::string& id, const PatientChange& change) {
@@ -98,8 +111,9 @@ absl::StatusOr<PatientRecord> SqliteStore::update_patient(const std::string& id,
 absl::Status SqliteStore::delete_patient(const std::string& id, bool force, const PatientCheck& check) {
   return transact([&]() -> absl::Status {
     const auto patient = read_patient(id);
-    if (!patient.ok()) return patient.status();
-    absl::Status fits = check != nullptr ? check(*patient) : absl::OkStatus();
+    // What is damaged can go, unless it is to be checked first.
+    absl::Status fits = absl::IsDataLoss(patient.status()) && check == nullptr ? absl::OkStatus() : patient.status();
+    if (fits.ok() && check != nullptr) fits = check(*patient);
     if (fits.ok() && !force) fits = check_empty(id);
     if (fits.ok()) fits = check_unused(patient_name(id) + "/", patient_name(id) + "0");
     if (!fits.ok()) return fits;

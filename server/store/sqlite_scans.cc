@@ -1,11 +1,10 @@
 #include "absl/strings/str_cat.h"
 #include "server/store/record_names.h"
+#include "server/store/row_sums.h"
 #include "server/store/sqlite_store.h"
 
 namespace lipofill::server {
 namespace {
-
-#define SCAN_COLUMNS "patient, id, format, unit, size_bytes, sha256, received_bytes, complete, report, create_time_us"
 
 ScanRecord scan_of(const Query& row) {
   ScanRecord scan;
@@ -20,6 +19,16 @@ ScanRecord scan_of(const Query& row) {
   scan.report_message = row.text(8);
   scan.create_time_us = row.integer(9);
   return scan;
+}
+
+/// A row of a list: one that is damaged is named and no more.
+ScanRecord listed_scan_of(const Query& row) {
+  if (row.is_true(10)) return scan_of(row);
+  ScanRecord damaged;
+  damaged.patient = row.text(0);
+  damaged.id = row.text(1);
+  damaged.is_damaged = true;
+  return damaged;
 }
 
 absl::Status no_scan(const std::string& patient, const std::string& id) {
@@ -52,17 +61,30 @@ absl::StatusOr<ScanRecord> SqliteStore::get_scan(const std::string& patient, con
 }
 
 absl::StatusOr<ScanRecord> SqliteStore::read_scan(const std::string& patient, const std::string& id) {
-  Query query(*database_, "SELECT " SCAN_COLUMNS " FROM scans WHERE patient = ? AND id = ?");
-  if (query.bind(patient, id).next()) return scan_of(query);
-  if (!query.status().ok()) return query.status();
-  return no_scan(patient, id);
+  Query query(*database_,
+              "SELECT " SCAN_COLUMNS ", " IS_WHOLE("scans", SCAN_COLUMNS) " FROM scans WHERE patient = ? AND id = ?");
+  if (!query.bind(patient, id).next()) return query.status().ok() ? no_scan(patient, id) : query.status();
+  if (!query.is_true(10)) return damaged_record(scan_name(patient, id));
+  return scan_of(query);
 }
 
 absl::StatusOr<std::vector<ScanRecord>> SqliteStore::list_scans(const std::string& patient, const Page& page) {
   const std::lock_guard lock(mutex_);
   if (const auto known = read_patient(patient); !known.ok()) return known.status();
-  Query query(*database_, "SELECT " SCAN_COLUMNS " FROM scans WHERE patient = ? AND id > ? ORDER BY id LIMIT ?");
+  Query query(*database_, "SELECT " SCAN_COLUMNS ", " IS_WHOLE(
+                              "scans", SCAN_COLUMNS) " FROM scans WHERE patient = ? AND id > ? ORDER BY id LIMIT ?");
   query.bind(patient, page.after, page.size);
+  std::vector<ScanRecord> scans;
+  while (query.next()) scans.push_back(listed_scan_of(query));
+  if (!query.status().ok()) return query.status();
+  return scans;
+}
+
+absl::StatusOr<std::vector<ScanRecord>> SqliteStore::list_incomplete_scans() {
+  const std::lock_guard lock(mutex_);
+  // One that is damaged is not among them: nobody can tell whether it is complete.
+  Query query(*database_, "SELECT " SCAN_COLUMNS " FROM scans WHERE complete = 0 AND " IS_WHOLE(
+                              "scans", SCAN_COLUMNS) " ORDER BY patient, id");
   std::vector<ScanRecord> scans;
   while (query.next()) scans.push_back(scan_of(query));
   if (!query.status().ok()) return query.status();

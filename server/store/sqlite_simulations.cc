@@ -1,12 +1,15 @@
 #include "absl/strings/str_cat.h"
 #include "server/store/record_names.h"
+#include "server/store/row_sums.h"
 #include "server/store/scope_query.h"
 #include "server/store/sqlite_store.h"
 
 namespace lipofill::server {
 namespace {
 
-#define SIMULATION_COLUMNS "id, model, display_name, spec, state, reason, summary, create_time_us, origin, tenant"
+/// Those that a record has; the epoch is the store's own.
+#define RECORD_COLUMNS "id, model, display_name, spec, state, reason, summary, create_time_us, origin, tenant"
+#define SIMULATION_IS_WHOLE IS_WHOLE("simulations", SIMULATION_COLUMNS)
 #define LAST_COMMAND "(SELECT coalesce(max(number), 0) FROM simulation_commands WHERE simulation = id)"
 /// The id in "patients/{patient}/models/{model}".
 #define PATIENT_OF_MODEL "substr(model, 10, instr(substr(model, 10), x'2f') - 1)"
@@ -25,6 +28,15 @@ SimulationRecord simulation_of(const Query& row) {
   simulation.tenant = row.text(9);
   simulation.last_command = row.unsigned_integer(10);
   return simulation;
+}
+
+/// A row of a list: one that is damaged is named and no more.
+SimulationRecord listed_simulation_of(const Query& row) {
+  if (row.is_true(11)) return simulation_of(row);
+  SimulationRecord damaged;
+  damaged.id = row.text(0);
+  damaged.is_damaged = true;
+  return damaged;
 }
 
 absl::Status no_simulation(const std::string& id) {
@@ -57,7 +69,7 @@ absl::StatusOr<SimulationRecord> SqliteStore::make_simulation(const SimulationRe
 }
 
 absl::Status SqliteStore::write_simulation(const SimulationRecord& simulation) {
-  Query insert(*database_, "INSERT INTO simulations (" SIMULATION_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  Query insert(*database_, "INSERT INTO simulations (" RECORD_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const absl::Status done = insert
                                 .bind(simulation.id, simulation.model, simulation.display_name, simulation.spec_message,
                                       static_cast<int>(simulation.state), simulation.reason, simulation.summary_message,
@@ -73,27 +85,30 @@ absl::StatusOr<SimulationRecord> SqliteStore::get_simulation(const std::string& 
 }
 
 absl::StatusOr<SimulationRecord> SqliteStore::read_simulation(const std::string& id) {
-  Query query(*database_, "SELECT " SIMULATION_COLUMNS ", " LAST_COMMAND " FROM simulations WHERE id = ?");
-  if (query.bind(id).next()) return simulation_of(query);
-  if (!query.status().ok()) return query.status();
-  return no_simulation(id);
+  Query query(*database_,
+              "SELECT " RECORD_COLUMNS ", " LAST_COMMAND ", " SIMULATION_IS_WHOLE " FROM simulations WHERE id = ?");
+  if (!query.bind(id).next()) return query.status().ok() ? no_simulation(id) : query.status();
+  if (!query.is_true(11)) return damaged_record(simulation_name(id));
+  return simulation_of(query);
 }
 
 absl::StatusOr<Owner> SqliteStore::owner_of_simulation(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  Query query(*database_, "SELECT tenant, " PATIENT_OF_MODEL " FROM simulations WHERE id = ?");
-  if (query.bind(id).next()) return Owner{query.text(0), query.text(1)};
-  return query.status().ok() ? no_simulation(id) : query.status();
+  if (const auto known = owners_.find(id); known != owners_.end()) return known->second;
+  Query query(*database_, "SELECT tenant, " PATIENT_OF_MODEL ", " SIMULATION_IS_WHOLE " FROM simulations WHERE id = ?");
+  if (!query.bind(id).next()) return query.status().ok() ? no_simulation(id) : query.status();
+  if (!query.is_true(2)) return damaged_record(simulation_name(id));
+  return owners_[id] = Owner{query.text(0), query.text(1)};
 }
 
 absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_simulations(const Scope& scope, const Page& page) {
   const std::lock_guard lock(mutex_);
-  Query query(*database_, "SELECT " SIMULATION_COLUMNS ", " LAST_COMMAND
+  Query query(*database_, "SELECT " RECORD_COLUMNS ", " LAST_COMMAND ", " SIMULATION_IS_WHOLE
                           " FROM simulations WHERE tenant = ?1 AND id > ?2 AND (?3 OR " PATIENT_OF_MODEL
                           " IN (SELECT CAST(value AS BLOB) FROM json_each(CAST(?4 AS TEXT)))) ORDER BY id LIMIT ?5");
   query.bind(scope.tenant, page.after, !scope.patients, json_of(scope), page.size);
   std::vector<SimulationRecord> simulations;
-  while (query.next()) simulations.push_back(simulation_of(query));
+  while (query.next()) simulations.push_back(listed_simulation_of(query));
   if (!query.status().ok()) return query.status();
   return simulations;
 }
@@ -103,9 +118,13 @@ absl::Status SqliteStore::end_simulation(const SimulationRecord& ended, const Si
     Query update(*database_, "UPDATE simulations SET state = ?, reason = ?, summary = ? WHERE id = ?");
     absl::Status done = update.bind(static_cast<int>(ended.state), ended.reason, ended.summary_message, ended.id).run();
     if (done.ok() && database_->changes() == 0) return no_simulation(ended.id);
-    Query insert(*database_, "INSERT OR REPLACE INTO simulation_results VALUES (?, ?, ?)");
+    // It is summed here, not by the trigger, which would write these megabytes twice.
+    Query insert(
+        *database_,
+        "INSERT OR REPLACE INTO simulation_results VALUES (?1, ?2, ?3, row_sum('simulation_results', ?1, ?2, ?3))");
     done.Update(insert.bind(ended.id, result.meshes_message, result.frame_message).run());
-    Query drop(*database_, "DELETE FROM checkpoints WHERE simulation = ? AND kind = ?");
+    Query drop(*database_, "DELETE FROM checkpoints WHERE simulation = ? AND kind = ? AND " IS_WHOLE(
+                               "checkpoints", CHECKPOINT_COLUMNS));
     done.Update(drop.bind(ended.id, static_cast<int>(CheckpointKind::kAutomatic)).run());
     return done;
   });
@@ -132,7 +151,7 @@ absl::Status SqliteStore::append_series(const std::string& id, const SeriesChunk
 }
 
 absl::Status SqliteStore::write_rows(const std::string& simulation, const SeriesChunk& rows) {
-  Query insert(*database_, "INSERT INTO simulation_series VALUES (?, ?, ?, ?)");
+  Query insert(*database_, "INSERT INTO simulation_series (" SERIES_COLUMNS ") VALUES (?, ?, ?, ?)");
   return insert.bind(simulation, rows.first_step, rows.last_step, rows.rows_message).run();
 }
 
@@ -150,9 +169,10 @@ absl::Status SqliteStore::erase_rows(const std::string& simulation, uint64_t las
 absl::StatusOr<std::optional<SeriesChunk>> SqliteStore::next_series_chunk(const std::string& id, uint64_t after_step) {
   const std::lock_guard lock(mutex_);
   Query query(*database_,
-              "SELECT first_step, last_step, rows FROM simulation_series WHERE simulation = ? AND last_step > ? "
+              "SELECT first_step, last_step, rows, " IS_WHOLE("simulation_series", SERIES_COLUMNS) " FROM simulation_series WHERE simulation = ? AND last_step > ? "
               "ORDER BY last_step LIMIT 1");
   if (query.bind(id, after_step).next()) {
+    if (!query.is_true(3)) return damaged_record(absl::StrCat(simulation_name(id), " (its series)"));
     return SeriesChunk{query.unsigned_integer(0), query.unsigned_integer(1), query.text(2)};
   }
   if (!query.status().ok()) return query.status();
@@ -163,8 +183,12 @@ absl::StatusOr<SimulationResult> SqliteStore::get_result(const std::string& id) 
   const std::lock_guard lock(mutex_);
   const auto simulation = read_simulation(id);
   if (!simulation.ok()) return simulation.status();
-  Query query(*database_, "SELECT meshes, frame FROM simulation_results WHERE simulation = ?");
-  if (query.bind(id).next()) return SimulationResult{query.text(0), query.text(1)};
+  Query query(*database_, "SELECT meshes, frame, " IS_WHOLE(
+                              "simulation_results", RESULT_COLUMNS) " FROM simulation_results WHERE simulation = ?");
+  if (query.bind(id).next()) {
+    if (!query.is_true(2)) return damaged_record(absl::StrCat(simulation_name(id), " (its result)"));
+    return SimulationResult{query.text(0), query.text(1)};
+  }
   if (!query.status().ok()) return query.status();
   return absl::FailedPreconditionError(absl::StrCat(simulation_name(id), " is ", state_name(simulation->state),
                                                     " and has no result", simulation->reason.empty() ? "" : ": ",
@@ -176,17 +200,18 @@ absl::Status SqliteStore::delete_simulation(const std::string& id) {
     Query remove(*database_, "DELETE FROM simulations WHERE id = ?");
     const absl::Status removed = remove.bind(id).run();
     if (removed.ok() && database_->changes() == 0) return no_simulation(id);
+    owners_.erase(id);
     return removed.ok() ? forget_requests(simulation_name(id)) : removed;
   });
 }
 
 absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_unended_simulations() {
   const std::lock_guard lock(mutex_);
-  Query query(*database_,
-              "SELECT " SIMULATION_COLUMNS ", " LAST_COMMAND " FROM simulations WHERE state < ? ORDER BY id");
+  Query query(*database_, "SELECT " RECORD_COLUMNS ", " LAST_COMMAND ", " SIMULATION_IS_WHOLE
+                          " FROM simulations WHERE state < ? ORDER BY id");
   query.bind(static_cast<int>(SimulationState::kSettled));
   std::vector<SimulationRecord> simulations;
-  while (query.next()) simulations.push_back(simulation_of(query));
+  while (query.next()) simulations.push_back(listed_simulation_of(query));
   if (!query.status().ok()) return query.status();
   return simulations;
 }

@@ -1,6 +1,7 @@
 #include "server/store/sqlite_store.h"
 
 #include "absl/strings/str_cat.h"
+#include "server/store/row_sums.h"
 #include "server/store/schema.h"
 
 namespace lipofill::server {
@@ -47,12 +48,14 @@ absl::StatusOr<std::optional<std::string>> SqliteStore::transact_once(const Requ
 
 absl::StatusOr<std::optional<std::string>> SqliteStore::read_request(const RequestKey& request) {
   if (request.id.empty()) return std::nullopt;
-  Query query(*database_, "SELECT fingerprint, name FROM requests WHERE tenant = ? AND method = ? AND id = ?");
+  Query query(*database_, "SELECT fingerprint, name, " IS_WHOLE(
+                              "requests", REQUEST_COLUMNS) " FROM requests WHERE tenant = ? AND method = ? AND id = ?");
   query.bind(request.tenant, request.method, request.id);
   if (!query.next()) {
     if (!query.status().ok()) return query.status();
     return std::nullopt;
   }
+  if (!query.is_true(2)) return damaged_record(absl::StrCat("the request ", request.id));
   if (query.text(0) != request.fingerprint) {
     return absl::InvalidArgumentError(
         absl::StrCat("request_id ", request.id, " was used for another ", request.method, " request"));
@@ -62,7 +65,7 @@ absl::StatusOr<std::optional<std::string>> SqliteStore::read_request(const Reque
 
 absl::Status SqliteStore::write_request(const RequestKey& request, const std::string& name) {
   if (request.id.empty()) return absl::OkStatus();
-  Query query(*database_, "INSERT INTO requests VALUES (?, ?, ?, ?, ?)");
+  Query query(*database_, "INSERT INTO requests (" REQUEST_COLUMNS ") VALUES (?, ?, ?, ?, ?)");
   return query.bind(request.tenant, request.method, request.id, request.fingerprint, name).run();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -29,6 +30,7 @@ class SqliteStore : public Store {
   absl::StatusOr<ScanRecord> create_scan(const ScanRecord& scan, const RequestKey& request) override;
   absl::StatusOr<ScanRecord> get_scan(const std::string& patient, const std::string& id) override;
   absl::StatusOr<std::vector<ScanRecord>> list_scans(const std::string& patient, const Page& page) override;
+  absl::StatusOr<std::vector<ScanRecord>> list_incomplete_scans() override;
   absl::Status set_scan_received(const std::string& patient, const std::string& id, uint64_t bytes) override;
   absl::Status complete_scan(const std::string& patient, const std::string& id,
                              const std::string& report_message) override;
@@ -79,6 +81,14 @@ class SqliteStore : public Store {
 
   absl::StatusOr<std::optional<std::string>> find_request(const RequestKey& request) override;
 
+  absl::Status note_draft(const std::string& path) override;
+  absl::StatusOr<std::vector<TemporaryFile>> list_temporary_files() override;
+  absl::Status forget_temporary_files(const std::vector<std::string>& paths) override;
+
+  /// The id that the store was made with, and how often it was opened to be served.
+  absl::StatusOr<StoreIdentity> read_identity();
+  absl::Status set_starts(uint64_t starts);
+
  private:
   explicit SqliteStore(std::unique_ptr<Database> database) : database_(std::move(database)) {}
 
@@ -123,6 +133,9 @@ class SqliteStore : public Store {
 
   std::mutex mutex_;
   std::unique_ptr<Database> database_;
+  /// The owners of simulations, which never change, as every call asks for one: to look into a
+  /// record is to sum all of it, and plans may be long.
+  std::map<std::string, Owner> owners_;
 };
 
 }  // namespace lipofill::server

@@ -40,6 +40,8 @@ class Store {
   virtual absl::StatusOr<ScanRecord> create_scan(const ScanRecord& scan, const RequestKey& request) = 0;
   virtual absl::StatusOr<ScanRecord> get_scan(const std::string& patient, const std::string& id) = 0;
   virtual absl::StatusOr<std::vector<ScanRecord>> list_scans(const std::string& patient, const Page& page) = 0;
+  /// Lists the scans of every patient of which bytes have yet to come.
+  virtual absl::StatusOr<std::vector<ScanRecord>> list_incomplete_scans() = 0;
   virtual absl::Status set_scan_received(const std::string& patient, const std::string& id, uint64_t bytes) = 0;
   virtual absl::Status complete_scan(const std::string& patient, const std::string& id,
                                      const std::string& report_message) = 0;
@@ -114,6 +116,14 @@ class Store {
   /// deleted since.
   virtual absl::StatusOr<Owner> owner_of_patient(const std::string& id) = 0;
   virtual absl::StatusOr<Owner> owner_of_simulation(const std::string& id) = 0;
+
+  /// Files that may be removed, because no record speaks of them yet, or any more. Whoever writes a
+  /// checkpoint's file notes it first; its record takes the note away, and deleting the record of a
+  /// scan or a checkpoint makes one.
+  virtual absl::Status note_draft(const std::string& path) = 0;
+  virtual absl::StatusOr<std::vector<TemporaryFile>> list_temporary_files() = 0;
+  /// Forgets files that are gone.
+  virtual absl::Status forget_temporary_files(const std::vector<std::string>& paths) = 0;
 
   /// The name an earlier, equal request made, if any.
   virtual absl::StatusOr<std::optional<std::string>> find_request(const RequestKey& request) = 0;

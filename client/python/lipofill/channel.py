@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from types import TracebackType
 from typing import Any, Iterator, List, Optional, Tuple, Type, TypeVar
 
@@ -131,9 +132,11 @@ class Channel:
             stream.cancel()
 
     def paged(self, method: UnaryUnary[Any, Any], request: Any, field: str) -> Iterator[Any]:
-        """The items of all pages of a List call."""
+        """The items of all pages of a List call. Those that are damaged are named in a warning."""
         while True:
             page = self.call(method, request)
+            for name in getattr(page, "unreachable", ()):
+                warnings.warn(f"{name} is damaged and cannot be shown", stacklevel=3)
             yield from getattr(page, field)
             if not page.next_page_token:
                 return

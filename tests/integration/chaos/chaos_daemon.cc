@@ -16,8 +16,9 @@ void ChaosDaemon::start() {
   channel_ = std::move(channel);
 }
 
-void ChaosDaemon::kill_and_restart() {
+void ChaosDaemon::kill_and_restart(const std::function<void()>& meanwhile) {
   process_->kill_hard();
+  meanwhile();
   start();
 }
 

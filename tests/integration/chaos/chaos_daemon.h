@@ -3,6 +3,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -19,8 +20,8 @@ class ChaosDaemon {
  public:
   ChaosDaemon(std::string data, std::vector<std::string> arguments);
 
-  /// SIGKILL, then a new one that serves.
-  void kill_and_restart();
+  /// SIGKILL, then a new one that serves; `meanwhile` is called between.
+  void kill_and_restart(const std::function<void()>& meanwhile = [] {});
   /// The same, with one between that is killed so soon after its start that it may not have come to
   /// serve.
   void kill_twice_and_restart(std::chrono::milliseconds lifetime);

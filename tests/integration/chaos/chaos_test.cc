@@ -1,5 +1,6 @@
 // The daemon is killed with SIGKILL at seeded random moments while clients create, steer, keep,
-// restore and delete simulations, watch them and upload scans; what they were told must hold.
+// restore and delete simulations, watch them and upload scans; between two lives files are taken
+// away, replaced by older ones and spoilt by a bit. What clients were told must hold.
 // LIPOFILL_CHAOS_KILLS and LIPOFILL_CHAOS_SEED say how often and in which order (deploy/chaos),
 // LIPOFILL_CHAOS_KEEP where to leave data and log when it fails.
 
@@ -12,6 +13,8 @@
 #include "server/store/checkpoint_files.h"
 #include "server/store/scan_files.h"
 #include "server/store/sqlite_store.h"
+#include "server/store/verification.h"
+#include "tests/integration/chaos/meddler.h"
 #include "tests/integration/chaos/planner.h"
 #include "tests/integration/chaos/spectator.h"
 #include "tests/integration/chaos/uploader.h"
@@ -19,6 +22,8 @@
 
 namespace lipofill::testing {
 namespace {
+
+using ::testing::IsEmpty;
 
 constexpr int kPlanners = 3;
 constexpr int kKillsInCi = 60;
@@ -43,18 +48,22 @@ void check_files(const std::string& data) {
   const auto checkpoints = server::CheckpointFiles::open(data + "/checkpoints");
   const auto scans = server::ScanFiles::open(data + "/scans");
   ASSERT_TRUE(checkpoints.ok() && scans.ok());
-  EXPECT_EQ(checkpoints->sweep([&](const std::string& simulation, const std::string& id) {
+  EXPECT_THAT(checkpoints->files().list_unknown([&](const std::string& simulation, const std::string& id) {
     const auto record = (*store)->get_checkpoint(simulation, id);
     return record.ok() && checkpoints->read(simulation, id, record->sha256).ok();
   }),
-            0)
+              IsEmpty())
       << "files of checkpoints that are in no record, or not whole";
-  EXPECT_EQ(scans->sweep([&](const std::string& patient, const std::string& id) {
+  EXPECT_THAT(scans->files().list_unknown([&](const std::string& patient, const std::string& id) {
     const auto record = (*store)->get_scan(patient, id);
-    return record.ok() && (!record->complete || scans->size(patient, id) == record->size_bytes);
+    return record.ok() && (!record->complete || scans->read_whole(patient, id, record->sha256).ok());
   }),
-            0)
+              IsEmpty())
       << "files of scans that are in no record, or not whole";
+  EXPECT_FALSE(std::filesystem::exists(data + "/set-aside")) << "no death leaves a file that nobody knows";
+  const auto found = server::verify_store(data, [](const server::Verification&) {});
+  ASSERT_TRUE(found.ok()) << found.status();
+  for (const server::Damage& damage : found->damages) ADD_FAILURE() << damage.name << ": " << damage.what;
   const auto simulations = (*store)->list_simulations({}, {"", 100'000});
   ASSERT_TRUE(simulations.ok());
   for (const server::SimulationRecord& simulation : *simulations) {
@@ -80,6 +89,8 @@ TEST(Chaos, WhatWasAcknowledgedHoldsHoweverOftenTheDaemonIsKilled) {
   Uploader uploader(daemon);
   Spectator spectator(daemon, [&] { return planners[0]->present(); });
 
+  Meddler meddler(daemon.data(), random());
+
   std::atomic<bool> stop = false;
   std::vector<std::thread> threads;
   for (const auto& planner : planners) threads.emplace_back([&] { planner->run(stop); });
@@ -89,6 +100,8 @@ TEST(Chaos, WhatWasAcknowledgedHoldsHoweverOftenTheDaemonIsKilled) {
     std::this_thread::sleep_for(std::chrono::milliseconds(random() % 400));
     if (random() % 5 == 0 && ++kill < kills) {
       daemon.kill_twice_and_restart(std::chrono::milliseconds(random() % 100));
+    } else if (random() % 2 == 0) {
+      daemon.kill_and_restart([&meddler] { meddler.meddle(); });
     } else {
       daemon.kill_and_restart();
     }
@@ -109,7 +122,8 @@ TEST(Chaos, WhatWasAcknowledgedHoldsHoweverOftenTheDaemonIsKilled) {
   check_files(daemon.data());
   std::cout << kills << " kills, seed " << seed << ": " << commands << " commands acknowledged, " << results
             << " results equal to an unbroken run, " << uploader.complete() << " scans, " << spectator.frames()
-            << " frames in " << spectator.epochs() << " epochs\n";
+            << " frames in " << spectator.epochs() << " epochs; " << meddler.removed() << " checkpoints removed, "
+            << meddler.replaced() << " replaced by others, " << meddler.flipped() << " bits flipped\n";
   if (const char* keep = std::getenv("LIPOFILL_CHAOS_KEEP"); keep != nullptr && HasFailure()) {
     std::filesystem::copy(directory.path(), keep, std::filesystem::copy_options::recursive);
   }

@@ -190,6 +190,8 @@ void Planner::pause_and_resume() {
   const v1::Simulation still = get(name_);
   EXPECT_EQ(still.state(), v1::Simulation::PAUSED) << name_ << ": " << still.reason();
   EXPECT_LE(still.summary().steps(), paused.summary().steps()) << name_;
+  EXPECT_TRUE(still.has_recovery() || still.summary().steps() == paused.summary().steps())
+      << name_ << ": an earlier step is marked as such";
   if (pick(3) == 0) go_back();
   v1::Simulation resumed;
   EXPECT_TRUE(steer(&Stub::ResumeSimulation, resumed)) << name_;

@@ -1,5 +1,8 @@
 // Tokens end, and with them what they began.
 
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "lipofill/v1/patient_service.grpc.pb.h"
@@ -77,6 +80,55 @@ TEST_F(ExpiryTest, ACallAfterwardsSaysWhatIsWrong) {
   EXPECT_EQ(answer.code(), StatusCode::UNAUTHENTICATED);
   EXPECT_EQ(answer.reason(), "TOKEN_EXPIRED");
 }
+
+#ifdef LIPOFILL_MOVED_CLOCK
+
+/// Has daemons that are started meanwhile load another clock.
+class OtherClock {
+ public:
+  OtherClock() {
+    ::setenv("LIPOFILL_TEST_CLOCK", file_.c_str(), 1);
+    ::setenv("LD_PRELOAD", LIPOFILL_MOVED_CLOCK, 1);
+  }
+  ~OtherClock() { end(); }
+  static void end() {
+    ::unsetenv("LD_PRELOAD");
+    ::unsetenv("LIPOFILL_TEST_CLOCK");
+  }
+  void set_ahead(int seconds) const {
+    std::ofstream(file_ + ".new") << seconds;
+    std::filesystem::rename(file_ + ".new", file_);
+  }
+
+ private:
+  TemporaryDirectory directory_;
+  const std::string file_ = directory_.file("seconds");
+};
+
+class SetClockTest : protected OtherClock, public ExpiryTest {
+ protected:
+  SetClockTest() { OtherClock::end(); }
+};
+
+TEST_F(SetClockTest, AStreamEndsWhenTheClockIsSetPastTheEndOfItsToken) {
+  const Caller for_an_hour = for_seconds(3600);
+  const auto stub = v1::FrameService::NewStub(channel_);
+  v1::WatchRequest request;
+  request.set_simulation(wards_.simulation);
+  request.set_heartbeat_ms(3'600'000);  // nothing else wakes the stream
+  const auto context = for_an_hour.context();
+  context->set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(60));
+  const auto stream = stub->Watch(context.get(), request);
+  v1::WatchResponse response;
+  ASSERT_TRUE(stream->Read(&response));
+  set_ahead(7200);
+  while (stream->Read(&response)) {
+  }
+  const grpc::Status ended = stream->Finish();
+  EXPECT_EQ(ended.error_code(), StatusCode::UNAUTHENTICATED) << ended.error_message();
+}
+
+#endif
 
 }  // namespace
 }  // namespace lipofill::testing

@@ -174,7 +174,7 @@ TEST_F(FaultTest, WithoutAnyCheckpointItBeginsAgain) {
   EXPECT_EQ(series("simulations/x").rows_size(), 300);
 }
 
-TEST_F(FaultTest, ABranchWithoutItsOriginFailsWithItsReasonAndTheRestGoesOn) {
+TEST_F(FaultTest, ABranchWithoutItsOriginWaitsForItAndTheRestGoesOn) {
   create(1000.0, "x");
   await_step("simulations/x", 20);
   v1::RestoreSimulationRequest request;
@@ -186,10 +186,18 @@ TEST_F(FaultTest, ABranchWithoutItsOriginFailsWithItsReasonAndTheRestGoesOn) {
   daemon_->kill_hard();
   flip_bit(data() / "checkpoints" / "y" / "origin", 200);
   connect();
-  const v1::Simulation failed = get_simulation("simulations/y");
-  EXPECT_EQ(failed.state(), v1::Simulation::FAILED);
-  EXPECT_THAT(failed.reason(), HasSubstr("it began from simulations/x/checkpoints/c"));
+  v1::Simulation waiting = get_simulation("simulations/y");
+  EXPECT_EQ(waiting.state(), v1::Simulation::READY);
+  EXPECT_THAT(waiting.recovery().waiting_for(), HasSubstr("it began from simulations/x/checkpoints/c"));
+  EXPECT_THAT(waiting.recovery().waiting_for(), HasSubstr("SHA-256"));
   EXPECT_EQ(get_simulation("simulations/x").state(), v1::Simulation::RUNNING);
+  flip_bit(data() / "checkpoints" / "y" / "origin", 200);
+  for (int i = 0; i < 5000 && waiting.has_recovery(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    waiting = get_simulation("simulations/y");
+  }
+  EXPECT_FALSE(waiting.has_recovery()) << "somebody put the right file in its place";
+  EXPECT_EQ(waiting.summary().state_hash(), branch.summary().state_hash());
 }
 
 TEST_F(FaultTest, ADamagedDatabaseIsRefusedWithWhatToDo) {

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "server/backend/parking.h"
+#include "server/store/sqlite.h"
 #include "server/wire/simulation_conversion.h"
 #include "tests/unit/server/backend/backend_fixture.h"
 
@@ -109,6 +111,47 @@ TEST_F(RecoveryTest, OneWhosePlanIsLostFailsAndTheOthersDoNotSufferFromIt) {
   EXPECT_THAT(record_of("a").reason, HasSubstr("its plan cannot be read"));
   EXPECT_EQ(backend_->sessions.find("a"), nullptr);
   EXPECT_TRUE(inspect("b").ok());
+}
+
+TEST_F(RecoveryTest, OneWhoseModelCannotBeBuiltWaitsAndComesBack) {
+  create("a", 1e6);
+  const SessionView before = run_to("a", 20);
+  restart();
+  ModelRecord model = *store_->get_model("anna", "m");
+  const std::string hash = model.content_hash;
+  const auto set_hash = [&](const std::string& text) {
+    const auto database = Database::open(directory_.file("db"));
+    Query update(**database, "UPDATE models SET content_hash = ?");
+    ASSERT_TRUE(update.bind(text).run().ok());
+  };
+  set_hash("of another program");
+  ASSERT_TRUE(bring_back_simulations(*backend_).ok());
+  EXPECT_EQ(backend_->sessions.find("a"), nullptr);
+  EXPECT_EQ(record_of("a").state, SimulationState::kPaused) << "what it was told to be stays so";
+  ASSERT_TRUE(backend_->awaited.find("a").has_value());
+  EXPECT_THAT(backend_->awaited.find("a")->waiting_for, HasSubstr("built again it is"));
+  EXPECT_EQ(backend_->awaited.find("a")->until_step, before.report.step);
+  const v1::Simulation shown = show_without_session(*backend_, record_of("a"));
+  EXPECT_EQ(shown.recovery().attempts(), 1u);
+  EXPECT_EQ(shown.recovery().until_step(), before.report.step);
+  EXPECT_TRUE(absl::IsUnavailable(find_or_wake(*backend_, "a").status()));
+  try_to_bring_back(*backend_, "a");
+  EXPECT_EQ(backend_->awaited.find("a")->attempts, 2u);
+  set_hash(hash);
+  try_to_bring_back(*backend_, "a");
+  EXPECT_FALSE(backend_->awaited.find("a").has_value());
+  EXPECT_EQ(inspect("a")->state_hash, before.state_hash);
+}
+
+TEST_F(RecoveryTest, OneThatIsDeletedIsNoLongerAwaited) {
+  create("a", 1e6);
+  restart();
+  backend_->awaited.note("a", "room", 0);
+  ASSERT_TRUE(delete_simulation_record(*backend_, "a").ok());
+  EXPECT_EQ(backend_->awaited.size(), 0u);
+  backend_->awaited.note("gone", "room", 0);
+  try_to_bring_back(*backend_, "gone");
+  EXPECT_EQ(backend_->awaited.size(), 0u);
 }
 
 TEST_F(RecoveryTest, AParkedOneStaysSoUntilItIsWoken) {

@@ -29,6 +29,35 @@ TEST(CheckpointSchedule, SlowCheckpointsAreAsFarApartAsAHundredOfThem) {
   EXPECT_TRUE(schedule.is_due(at(520 + 2000)));
 }
 
+TEST(CheckpointSchedule, IsDueSoonAfterAStartOfTheDaemonAndThenLessOften) {
+  CheckpointSchedule schedule(10.0, 7);
+  schedule.begin_soon(at(0));
+  int now = 0;
+  for (const int interval : {250, 500, 1000, 2000, 4000, 8000, 10'000, 10'000}) {
+    EXPECT_FALSE(schedule.is_due(at(now + interval - 1))) << now;
+    now += interval;
+    EXPECT_TRUE(schedule.is_due(at(now))) << now;
+    schedule.begin_next(at(now), at(now));
+  }
+}
+
+TEST(CheckpointSchedule, TakesUpToATenthOfTheRunSoonAfterAStart) {
+  CheckpointSchedule schedule(10.0, 7);
+  schedule.begin_soon(at(0));
+  schedule.begin_next(at(250), at(350));
+  EXPECT_FALSE(schedule.is_due(at(350 + 999)));
+  EXPECT_TRUE(schedule.is_due(at(350 + 1000)));
+}
+
+TEST(CheckpointSchedule, AShortIntervalStaysAsItIs) {
+  CheckpointSchedule schedule(0.1, 7);
+  schedule.begin_soon(at(0));
+  EXPECT_TRUE(schedule.is_due(at(100)));
+  schedule.begin_next(at(100), at(101));
+  EXPECT_FALSE(schedule.is_due(at(200)));
+  EXPECT_TRUE(schedule.is_due(at(201)));
+}
+
 TEST(CheckpointSchedule, IsNeverDueWithoutAnInterval) {
   CheckpointSchedule schedule(0.0, 7);
   EXPECT_FALSE(schedule.is_on());

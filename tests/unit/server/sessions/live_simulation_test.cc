@@ -61,7 +61,7 @@ TEST_F(LiveSimulationTest, GoesBackInANewEpochWithoutTheRowsOfTheFutureItLeft) {
 TEST_F(LiveSimulationTest, ACheckpointTakesTheRowsThatWaitedWithIt) {
   LiveSimulation live = make(1.0, 2.0);
   for (int step = 0; step < 3; ++step) live.advance_step();
-  const auto kept = live.keep_checkpoint(CheckpointKind::kAsked, "c1", {});
+  const auto kept = live.keep_checkpoint(CheckpointKind::kAsked, "c1", 0, {});
   ASSERT_TRUE(kept.ok()) << kept.status();
   EXPECT_EQ(kept->step, 3u);
   EXPECT_EQ(kept->wall_s, 2.0) << "its clock stands";
@@ -70,7 +70,7 @@ TEST_F(LiveSimulationTest, ACheckpointTakesTheRowsThatWaitedWithIt) {
   EXPECT_TRUE(live.series().after(0).empty());
   sink_.room = absl::ResourceExhaustedError("the disk is full");
   live.advance_step();
-  EXPECT_FALSE(live.keep_checkpoint(CheckpointKind::kAsked, "c2", {}).ok());
+  EXPECT_FALSE(live.keep_checkpoint(CheckpointKind::kAsked, "c2", 0, {}).ok());
   EXPECT_EQ(live.series().after(0).size(), 1u) << "the row waits";
 }
 

@@ -145,6 +145,30 @@ TEST_F(SessionResumeTest, APausedOneCatchesUpAndStandsWhereItStood) {
   EXPECT_EQ(inspect(*s)->state_hash, hash_of_an_unbroken_run({40, 90}));
 }
 
+TEST_F(SessionResumeTest, KeepsItsStateWhileItCatchesUpWithTheCommandsThatAreInIt) {
+  SessionHistory history;
+  history.state = SimulationState::kRunning;
+  history.was_there = true;
+  history.last_command = 1;
+  history.commands = {{2, 1200}, {3, 1200}, {4, 2500}};
+  history.injections = {{1200, more()}, {1200, more()}};
+  history.until_step = 2500;
+  const auto s = session(at_step(0, 40.0), history, 1e-4);
+  EXPECT_EQ(s->cached_view().catching_up_to.value_or(2500), 2500u);
+  const SessionView ended = await(*s, SimulationState::kFinished, 4000);
+  EXPECT_FALSE(ended.catching_up_to.has_value());
+  workers_.stop();
+  int meanwhile = 0;
+  for (const MemorySink::Kept& kept : sink_.checkpoints) {
+    const uint64_t step = kept.record.step, last = kept.record.last_command;
+    meanwhile += step < 2500 ? 1 : 0;
+    // The injections after step 1200 are in the states that follow; in the end all commands are.
+    const uint64_t expected = step <= 1200 ? 1 : step <= 2500 ? 3 : 0;
+    EXPECT_TRUE(step == 2500 || last == expected) << step << ": " << last;
+  }
+  EXPECT_GT(meanwhile, 1);
+}
+
 TEST_F(SessionResumeTest, AStopThatWasAcknowledgedTakesEffectAtItsStep) {
   SessionHistory history;
   history.state = SimulationState::kRunning;

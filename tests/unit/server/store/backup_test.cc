@@ -7,6 +7,7 @@
 
 #include "server/store/checkpoint_files.h"
 #include "server/store/data_directory.h"
+#include "server/store/durable_file.h"
 #include "server/store/scan_files.h"
 #include "server/store/sqlite_store.h"
 #include "tests/unit/server/temporary_directory.h"
@@ -31,6 +32,8 @@ class BackupTest : public ::testing::Test {
       scan.patient = "anna";
       scan.id = id;
       scan.size_bytes = 19;
+      scan.sha256 = "d5e3c1d6418e52b7b3d375786ade650ec129a77c1c9b3171a256aa71376f8025";
+      scan.complete = std::string(id) == "s1";
       EXPECT_TRUE((*store)->create_scan(scan, {}).ok());
     }
     store_ = *std::move(store);
@@ -89,6 +92,34 @@ TEST_F(BackupTest, ADamagedBackupChangesNothing) {
   EXPECT_TRUE(absl::IsDataLoss(restore().status()));
   EXPECT_FALSE(fs::exists(other() / "lipofill.sqlite"));
   EXPECT_FALSE(fs::exists(other() / "scans"));
+}
+
+TEST_F(BackupTest, WhatIsDamagedIsNamedAndTheRestIsKept) {
+  ASSERT_TRUE(ScanFiles::open(data() / "scans")->write("anna", "s1", 4, "B").ok());
+  ASSERT_TRUE((*Database::open((data() / "lipofill.sqlite").string()))
+                  ->execute("UPDATE scans SET sum = zeroblob(32) WHERE id = x'7332'")
+                  .ok());
+  const auto report = back_up();
+  ASSERT_TRUE(report.ok()) << report.status();
+  ASSERT_EQ(report->damages.size(), 2u);
+  EXPECT_EQ(report->damages[0].name, "patients/anna/scans/s2");
+  EXPECT_EQ(report->damages[1].name, "patients/anna/scans/s1");
+  EXPECT_THAT(report->damages[1].what, HasSubstr("is not what was uploaded"));
+  EXPECT_THAT(*read_whole_file(target() / "DAMAGED", 10'000), HasSubstr("patients/anna/scans/s1: its file"));
+  const auto restored = restore();
+  ASSERT_TRUE(restored.ok()) << restored.status();
+  EXPECT_EQ(restored->damages.size(), 2u);
+  const auto store = SqliteStore::open((other() / "lipofill.sqlite").string());
+  EXPECT_TRUE((*store)->get_patient("anna").ok());
+  EXPECT_TRUE(absl::IsDataLoss((*store)->get_scan("anna", "s2").status()));
+}
+
+TEST_F(BackupTest, RestoresOnlyWhereThereIsNothingOfAStore) {
+  ASSERT_TRUE(back_up().ok());
+  ASSERT_TRUE(ScanFiles::open(other() / "scans")->write("anna", "s1", 0, "of another store").ok());
+  const auto refused = restore();
+  EXPECT_TRUE(absl::IsFailedPrecondition(refused.status())) << refused.status();
+  EXPECT_THAT(std::string(refused.status().message()), HasSubstr("scans/anna/s1"));
 }
 
 TEST_F(BackupTest, ANameThatLeadsOutOfTheBackupIsRefused) {

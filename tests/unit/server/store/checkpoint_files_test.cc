@@ -78,16 +78,10 @@ TEST_F(CheckpointFilesTest, ReadsOnlyWhatItWrote) {
   EXPECT_TRUE(absl::IsNotFound(files_.read("x", "c2", written->sha256).status()));
 }
 
-TEST_F(CheckpointFilesTest, SweepsWhatNobodyKnows) {
+TEST_F(CheckpointFilesTest, AnOwnersDirectoryGoesWithItsLastFile) {
   for (const char* id : {"c1", "c2"}) ASSERT_TRUE(files_.write("x", id, sample()).ok());
-  ASSERT_TRUE(files_.write("gone", "c1", sample()).ok());
-  std::ofstream(path("c3.draft")) << "half";
-  const int removed = files_.sweep(
-      [](const std::string& simulation, const std::string& id) { return simulation == "x" && id == "c2"; });
-  EXPECT_EQ(removed, 3);
+  files_.remove("x", "c1");
   EXPECT_TRUE(std::filesystem::exists(path("c2")));
-  EXPECT_FALSE(std::filesystem::exists(path("c3.draft")));
-  EXPECT_FALSE(std::filesystem::exists(directory_.path() / "checkpoints" / "gone"));
   files_.remove("x", "c2");
   EXPECT_FALSE(std::filesystem::exists(path("c2").parent_path()));
 }

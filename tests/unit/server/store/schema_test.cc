@@ -75,8 +75,22 @@ CREATE TABLE checkpoints (
 PRAGMA user_version = 3;
 )";
 
+/// Version 4 has tenants.
+constexpr char kVersion4[] = R"(
+ALTER TABLE patients ADD COLUMN tenant BLOB NOT NULL DEFAULT x'6c6f63616c';
+ALTER TABLE simulations ADD COLUMN tenant BLOB NOT NULL DEFAULT x'6c6f63616c';
+DROP TABLE requests;
+CREATE TABLE requests (
+  tenant BLOB NOT NULL, method BLOB NOT NULL, id BLOB NOT NULL, fingerprint BLOB NOT NULL, name BLOB NOT NULL,
+  PRIMARY KEY (tenant, method, id)) WITHOUT ROWID;
+CREATE INDEX requests_by_name ON requests(name);
+CREATE INDEX patients_by_tenant ON patients(tenant, id);
+CREATE INDEX simulations_by_tenant ON simulations(tenant, id);
+PRAGMA user_version = 4;
+)";
+
 constexpr char kContent[] = R"(
-INSERT INTO patients VALUES (x'61', x'6e616d65', 1);
+INSERT INTO patients (id, display_name, create_time_us) VALUES (x'61', x'6e616d65', 1);
 INSERT INTO patient_labels VALUES (x'61', x'6b', x'76');
 INSERT INTO scans VALUES (x'61', x'73', 2, 1, 5000000000, x'6162', 12, 0, x'', 2);
 INSERT INTO models (patient, id, scan, content_hash, spec, report, create_time_us)
@@ -84,8 +98,9 @@ INSERT INTO models (patient, id, scan, content_hash, spec, report, create_time_u
 INSERT INTO simulations (id, model, display_name, spec, state, reason, summary, create_time_us) VALUES (x'72', x'6d', x'', x'70', 1, x'', x'', 4), (x'73', x'6d', x'', x'70', 4, x'', x'75', 5);
 INSERT INTO simulation_results VALUES (x'73', x'6d', x'66');
 INSERT INTO simulation_series VALUES (x'73', 1, 500, x'77');
-INSERT INTO requests VALUES (x'43', x'31', x'66', x'70');
 )";
+constexpr char kRequest[] = "INSERT INTO requests VALUES (x'43', x'31', x'66', x'70')";
+constexpr char kRequestOfTenant[] = "INSERT INTO requests VALUES (x'6c6f63616c', x'43', x'31', x'66', x'70')";
 
 /// Every column of every table and every index, as the database sees them.
 std::set<std::string> shape_of(const std::string& path) {
@@ -112,7 +127,9 @@ class SchemaTest : public ::testing::TestWithParam<int> {
     ASSERT_TRUE((*database)->execute(kVersion1).ok());
     ASSERT_TRUE((*database)->execute(version >= 2 ? kVersion2 : "").ok());
     ASSERT_TRUE((*database)->execute(version >= 3 ? kVersion3 : "").ok());
+    ASSERT_TRUE((*database)->execute(version >= 4 ? kVersion4 : "").ok());
     ASSERT_TRUE((*database)->execute(kContent).ok());
+    ASSERT_TRUE((*database)->execute(version >= 4 ? kRequestOfTenant : kRequest).ok());
   }
   lipofill::testing::TemporaryDirectory directory_;
   std::string path_ = directory_.file("db");
@@ -161,8 +178,8 @@ TEST_P(SchemaTest, EndsInTheShapeOfANewOne) {
 
 TEST_P(SchemaTest, StaysAsItIsWhenTheChangeFails) {
   make(GetParam());
-  // The last of the changes finds its name taken.
-  ASSERT_TRUE((*Database::open(path_))->execute("CREATE TABLE simulations_by_tenant (x)").ok());
+  // One of the last changes finds its name taken.
+  ASSERT_TRUE((*Database::open(path_))->execute("CREATE TABLE temporary_files (x)").ok());
   const std::set<std::string> before = shape_of(path_);
   EXPECT_FALSE(SqliteStore::open(path_).ok());
   EXPECT_EQ(shape_of(path_), before);

@@ -317,5 +317,20 @@ TEST(DataDirectoryTest, BelongsToOneDaemon) {
   EXPECT_TRUE(DataDirectory::open(directory.path() / "data").ok());
 }
 
+TEST_F(StoreTest, TheOwnerOfASimulationIsThatOfTheOneThereIsNow) {
+  SimulationRecord record = simulation("x");
+  record.tenant = "ward";
+  ASSERT_TRUE(store_->create_simulation(record, {}).ok());
+  EXPECT_EQ(store_->owner_of_simulation("x")->tenant, "ward");
+  EXPECT_EQ(store_->owner_of_simulation("x")->patient, "anna");
+  ASSERT_TRUE(store_->delete_simulation("x").ok());
+  EXPECT_TRUE(absl::IsNotFound(store_->owner_of_simulation("x").status()));
+  record.tenant = "clinic";
+  record.model = "patients/berta/models/m";
+  ASSERT_TRUE(store_->create_simulation(record, {}).ok());
+  EXPECT_EQ(store_->owner_of_simulation("x")->tenant, "clinic");
+  EXPECT_EQ(store_->owner_of_simulation("x")->patient, "berta");
+}
+
 }  // namespace
 }  // namespace lipofill::server

@@ -1,0 +1,70 @@
+#include "server/store/row_sums.h"
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/substitute.h"
+
+namespace lipofill::server {
+namespace {
+
+#define OF_PATIENT "'patients/' || CAST(patient AS TEXT) || "
+#define OF_SIMULATION "'simulations/' || CAST(simulation AS TEXT) || "
+
+/// The columns, each with a prefix: "NEW." makes "NEW.id, NEW.display_name".
+std::string with_prefix(const std::string& prefix, const std::string& columns) {
+  return absl::StrCat(prefix, absl::StrReplaceAll(columns, {{", ", absl::StrCat(", ", prefix)}}));
+}
+
+std::string is_new_row(const SummedTable& table) {
+  const std::vector<std::string> columns = absl::StrSplit(table.key, ", ");
+  return absl::StrJoin(columns, " AND ", [](std::string* text, const std::string& column) {
+    absl::StrAppend(text, column, " = NEW.", column);
+  });
+}
+
+// $0 table, $1 columns, $2 the same of the new row, $3 of the old one, $4 which row is the new one.
+constexpr char kStatements[] = R"(
+ALTER TABLE $0 ADD COLUMN sum BLOB NOT NULL DEFAULT x'';
+UPDATE $0 SET sum = row_sum('$0', $1);
+CREATE TRIGGER $0_are_summed AFTER INSERT ON $0 WHEN NEW.sum = x''
+  BEGIN UPDATE $0 SET sum = row_sum('$0', $2) WHERE $4; END;
+CREATE TRIGGER $0_are_checked BEFORE UPDATE OF $1 ON $0 WHEN OLD.sum <> row_sum('$0', $3)
+  BEGIN SELECT RAISE(ABORT, 'a record among $0 is not what was written'); END;
+CREATE TRIGGER $0_are_summed_anew AFTER UPDATE OF $1 ON $0
+  BEGIN UPDATE $0 SET sum = row_sum('$0', $2) WHERE $4; END;
+)";
+
+}  // namespace
+
+const std::array<SummedTable, 10> kSummedTables = {{
+    {"patients", PATIENT_COLUMNS, "id", "'patients/' || CAST(id AS TEXT)"},
+    {"patient_labels", LABEL_COLUMNS, "patient, key", OF_PATIENT "' (a label)'"},
+    {"scans", SCAN_COLUMNS, "patient, id", OF_PATIENT "'/scans/' || CAST(id AS TEXT)"},
+    {"models", MODEL_COLUMNS, "patient, id", OF_PATIENT "'/models/' || CAST(id AS TEXT)"},
+    {"simulations", SIMULATION_COLUMNS, "id", "'simulations/' || CAST(id AS TEXT)"},
+    {"simulation_results", RESULT_COLUMNS, "simulation", OF_SIMULATION "' (its result)'"},
+    {"simulation_series", SERIES_COLUMNS, "simulation, last_step",
+     OF_SIMULATION "' (its series, steps ' || first_step || ' to ' || last_step || ')'"},
+    {"requests", REQUEST_COLUMNS, "tenant, method, id", "CAST(name AS TEXT) || ' (the request that made it)'"},
+    {"simulation_commands", COMMAND_COLUMNS, "simulation, number", OF_SIMULATION "' (its command ' || number || ')'"},
+    {"checkpoints", CHECKPOINT_COLUMNS, "simulation, id", OF_SIMULATION "'/checkpoints/' || CAST(id AS TEXT)"},
+}};
+
+std::string make_row_sums() {
+  std::string statements;
+  for (const SummedTable& table : kSummedTables) {
+    absl::StrAppend(&statements,
+                    absl::Substitute(kStatements, table.name, table.columns, with_prefix("NEW.", table.columns),
+                                     with_prefix("OLD.", table.columns), is_new_row(table)));
+  }
+  return statements;
+}
+
+absl::Status damaged_record(const std::string& name) {
+  return absl::DataLossError(absl::StrCat(
+      name, " is damaged: what the store has of it is not what was written; delete it, or restore a backup"));
+}
+
+}  // namespace lipofill::server

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "absl/status/status.h"
+#include "server/store/sqlite.h"
+
+// The columns of every table that are summed, in the order of their sum. They are macros so that
+// statements are literals.
+#define PATIENT_COLUMNS "id, display_name, create_time_us, tenant"
+#define LABEL_COLUMNS "patient, key, value"
+#define SCAN_COLUMNS "patient, id, format, unit, size_bytes, sha256, received_bytes, complete, report, create_time_us"
+#define MODEL_COLUMNS "patient, id, scan, content_hash, spec, report, create_time_us, bone_scan"
+#define SIMULATION_COLUMNS \
+  "id, model, display_name, spec, state, reason, summary, create_time_us, origin, tenant, epoch"
+#define RESULT_COLUMNS "simulation, meshes, frame"
+#define SERIES_COLUMNS "simulation, first_step, last_step, rows"
+#define REQUEST_COLUMNS "tenant, method, id, fingerprint, name"
+#define COMMAND_COLUMNS "simulation, number, kind, step, payload, on_course, create_time_us"
+#define CHECKPOINT_COLUMNS                                                                                \
+  "simulation, id, kind, on_course, step, time_s, wall_s, last_command, size_bytes, sha256, state_hash, " \
+  "create_time_us"
+
+/// An expression that is 1 for a row that is what was written, else 0.
+#define IS_WHOLE(table, columns) "sum = row_sum('" table "', " columns ")"
+
+namespace lipofill::server {
+
+/// A table whose rows are summed: its column `sum` holds the SHA-256 of the table's name and all
+/// other columns.
+struct SummedTable {
+  const char* name;
+  const char* columns;  ///< those that are summed, with ", " between them
+  const char* key;      ///< the columns that tell its rows apart
+  const char* title;    ///< an expression: the name of what a row is of
+};
+
+/// Every table that keeps something of a user.
+extern const std::array<SummedTable, 10> kSummedTables;
+
+/// The statements that give every table its sums: the column, the sums of the rows that are there,
+/// and the triggers that sum a row when it is written, and refuse to change one that is not what
+/// was written, so that damage is never summed anew. Checked by
+/// tests/unit/server/store/row_sums_test.cc.
+std::string make_row_sums();
+
+/// DATA_LOSS for the record of a resource that is not what was written.
+absl::Status damaged_record(const std::string& name);
+
+}  // namespace lipofill::server

@@ -44,7 +44,10 @@ bool update_limits(const StaticBalance& balance, const Pools& pools, const PoolT
     char& is_at_limit = shape.is_at_limit[static_cast<size_t>(pool)];
     const bool comes = is_at_limit == 0 && shape.pressure[pool] < target.lowest_head;
     const bool leaves = is_at_limit == 1 && gap[pool] < target.volume[pool];
-    if (comes) is_at_limit = 1;
+    if (comes) {
+      is_at_limit = 1;
+      shape.pressure[pool] = target.lowest_head;
+    }
     if (leaves) is_at_limit = 0;
     has_changed = has_changed || comes || leaves;
   }

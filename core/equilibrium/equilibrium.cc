@@ -72,6 +72,13 @@ Settled Equilibrium::describe(const PoolTarget& target, const Shape& shape, doub
   settled.cell_pressure = balance_.cell_pressure();
   settled.pool_volume = pools_.sum(settled.cell_volume);
   settled.pool_head = shape.pressure.head(pools_.n());
+  settled.is_at_limit = shape.is_at_limit;
+  for (int cell = 0; cell < pools_.n_cells(); ++cell) {
+    // Exactly the limit, by which the void is known.
+    const auto pool = static_cast<size_t>(pools_.of_cell[cell]);
+    if (shape.is_at_limit[pool])
+      settled.cell_pressure[cell] = std::min(settled.cell_pressure[cell], target.lowest_head);
+  }
   settled.fat_volume = target.volume;
   settled.closed = shape.closed;
   settled.force_error = balance_.relative_force();

@@ -23,6 +23,7 @@ struct Settled {
   Eigen::VectorXd pool_volume;    ///< [m3]
   Eigen::VectorXd pool_head;      ///< [Pa]
   Eigen::VectorXd fat_volume;     ///< of each pool [m3]: less than pool_volume where it is at the suction limit
+  std::vector<char> is_at_limit;  ///< 1: the pool is at the suction limit
   std::vector<int> closed;        ///< cells whose walls touch, ascending
   double force_error = 0.0;       ///< what is left of the forces, share of those that act
   bool is_double = false;         ///< float32 was not enough for the factor

@@ -57,6 +57,7 @@ absl::Status Simulation::Impl::set_up() {
   if (const absl::Status status = stepper->open_to_initial_thickness(state); !status.ok()) return status;
   state.next_step = spec.step;
   for (const mechanics::FilmState& film : state.films) initial_volume += film.volume.sum();
+  decide_way();
 
   fill_report(stepper->describe(state), 0.0);
   return absl::OkStatus();
@@ -77,6 +78,8 @@ void Simulation::advance_step() {
 void Simulation::Impl::advance() {
   stepper->reset_cost();
   try {
+    if (state.step == 0) decide_way();  // injections may have come since
+    if (state.step == 0 && settles_directly) return settle();
     try_with_smaller_steps();
     if (!attempt.accepted) return fail(attempt.reason);
     accept(attempt.state.time - state.time);

@@ -76,6 +76,7 @@ struct StepReport {
   double ligament_tension = 0.0;  ///< sum over all ligaments [N]
   int broken_ligament_points = 0;
   int closed_cells = 0;                 ///< cells that fat has not entered
+  std::string way;                      ///< "directly", or "in steps: " and what asks for them
   mechanics::StepCost cost;             ///< the step took it, with tries that were taken back
   std::vector<double> probe_thickness;  ///< [m]
   std::vector<double> probe_pressure;   ///< [Pa]
@@ -112,8 +113,10 @@ class Simulation {
                                                             plan::SimulationSpec spec);
   ~Simulation();
 
-  /// Takes one time step. Never throws. On failure phase() is kFailed with reason(), and the state
-  /// stays that before the step. Does nothing unless phase() is kRunning.
+  /// Takes one time step; for a plan whose goal is its settled shape, and that has one whatever the
+  /// way there (core/equilibrium/scope.h), the one step to it. Never throws. On failure phase() is
+  /// kFailed with reason(), and the state stays that before the step, or is the last shape on the
+  /// path to the settled one. Does nothing unless phase() is kRunning.
   void advance_step();
 
   Phase phase() const;

@@ -8,6 +8,7 @@
 #include "core/plan/film_layout.h"
 #include "core/plan/injection_schedule.h"
 #include "core/plan/plan_placement.h"
+#include "core/simulation/direct_shape.h"
 #include "core/simulation/frame_layout.h"
 #include "core/simulation/simulation.h"
 #include "core/step/coupled_step.h"
@@ -25,6 +26,8 @@ struct Simulation::Impl {
   std::vector<plan::ProbePlace> probes;
   plan::InjectionSchedule schedule;
   std::unique_ptr<step::CoupledStep> stepper;
+  bool settles_directly = false;        ///< the settled shape is found in place of the first step
+  std::unique_ptr<DirectShape> direct;  ///< made when it is
   mechanics::SimulationState state;
   Phase phase = Phase::kRunning;
   std::string reason;
@@ -39,6 +42,9 @@ struct Simulation::Impl {
 
   absl::Status set_up();
   void advance();
+  void decide_way();
+  void settle();
+  void end_path(const equilibrium::Settled& settled);
   void try_with_smaller_steps();
   double first_step_to_try(double smallest) const;
   double next_mark() const;

@@ -90,6 +90,11 @@ bool is_possible(const mechanics::SimulationState& state, int phase) {
   return is_phase && is_counted && is_timed;
 }
 
+/// A shape found directly is there after one step.
+bool state_was_stepped(const mechanics::SimulationState& state, Phase phase) {
+  return state.step > 1 || (state.step == 1 && phase == Phase::kRunning);
+}
+
 struct HashVisitor {
   Hasher hasher;
   template <typename T>
@@ -148,6 +153,8 @@ absl::Status Simulation::restore(std::string_view snapshot) {
   impl.phase = static_cast<Phase>(phase);
   impl.schedule.restore_delivered(delivered, total);
   impl.initial_volume = initial;
+  const bool was_stepped = state_was_stepped(impl.state, impl.phase);
+  if (was_stepped && impl.settles_directly) impl.report.way = "in steps: it was begun in them";
   impl.fill_report(impl.stepper->describe(impl.state), impl.state.last_step);
   return absl::OkStatus();
 }

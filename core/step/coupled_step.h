@@ -67,6 +67,11 @@ class CoupledStep {
   /// Figures of a state that does not come from try_step: gap, void, energies, springs.
   StepOutcome describe(const mechanics::SimulationState& state);
 
+  /// The parts that finding a settled shape directly shares with steps; null without tissue.
+  mechanics::TissueSystem* system() { return system_.get(); }
+  const mechanics::FilmCells& cells() const { return cells_; }
+  mechanics::StepCost& cost() { return cost_; }
+
   int n_dofs() const { return system_ ? system_->tissue().n_dofs() : 0; }
   /// Memory of the factor, the compliance, the matrices and the vectors, once steps are taken [B].
   uint64_t memory_bytes() const;

@@ -59,6 +59,8 @@ TEST(ActiveSets, APoolComesToTheLimitAndLeavesIt) {
   c.shape.pressure[0] = -150.0;
   ASSERT_TRUE(update_active_sets(c.balance, c.pools, c.target, true, c.shape));
   EXPECT_EQ(c.shape.is_at_limit[0], 1);
+  EXPECT_EQ(c.shape.pressure[0], -100.0);
+  c.shape.pressure[0] = -150.0;
   EXPECT_NEAR(find_missing(c.balance, c.pools, c.target, c.shape)[0], 50.0, 1e-12) << "of pressure";
   c.target.volume[0] *= 1.5;
   ASSERT_TRUE(update_active_sets(c.balance, c.pools, c.target, true, c.shape));

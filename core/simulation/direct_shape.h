@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/equilibrium/equilibrium.h"
+#include "core/equilibrium/scope.h"
+#include "core/plan/injection_schedule.h"
+#include "core/step/coupled_step.h"
+
+namespace lipofill::simulation {
+
+/// The settled shape of a plan, found directly (core/equilibrium) in place of steps, with the parts
+/// of its step. Checked by tests/unit/simulation/direct_shape_test.cc.
+class DirectShape {
+ public:
+  /// The first field of the plan that forbids it, nothing where the settled shape can be found so.
+  /// @param rest  the state that the plan begins with
+  static std::optional<equilibrium::Hindrance> find_hindrance(const model::FaceModel& model,
+                                                              const std::vector<plan::FilmLayout>& films,
+                                                              const plan::SimulationSpec& spec,
+                                                              const plan::InjectionSchedule& schedule,
+                                                              const mechanics::SimulationState& rest,
+                                                              const step::CoupledStep& stepper);
+
+  /// For a plan that nothing forbids. Errors as Equilibrium::create. What is passed here outlives
+  /// the shape.
+  static absl::StatusOr<std::unique_ptr<DirectShape>> create(const model::FaceModel& model,
+                                                             const std::vector<plan::FilmLayout>& films,
+                                                             const plan::SimulationSpec& spec,
+                                                             step::CoupledStep& stepper);
+
+  /// Finds the shape with what is injected [m3] (a film, its cells) and writes it into `next`:
+  /// positions, and volumes and pressures of the films, nothing moves. Where not all of it goes in,
+  /// `next` has as much as does.
+  equilibrium::Settled find(const mechanics::SimulationState& rest, const std::vector<Eigen::VectorXd>& injected,
+                            mechanics::SimulationState& next);
+
+ private:
+  DirectShape(const mechanics::FilmCells& cells, std::unique_ptr<equilibrium::Equilibrium> equilibrium,
+              double lowest_head)
+      : cells_(cells), equilibrium_(std::move(equilibrium)), lowest_head_(lowest_head) {}
+  void fill_films(const equilibrium::Settled& settled, mechanics::SimulationState& next) const;
+
+  const mechanics::FilmCells& cells_;
+  std::unique_ptr<equilibrium::Equilibrium> equilibrium_;
+  double lowest_head_;
+};
+
+}  // namespace lipofill::simulation

@@ -1,0 +1,65 @@
+// The settled shape in place of the first step.
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/base/units.h"
+#include "core/simulation/simulation_impl.h"
+
+namespace lipofill::simulation {
+
+/// Decides whether the plan is solved directly, and says why not.
+void Simulation::Impl::decide_way() {
+  settles_directly = false;
+  if (spec.goal == plan::TimeGoal::kTransient) {
+    report.way = "in steps: time.goal is TRANSIENT";
+    return;
+  }
+  const auto hindrance = DirectShape::find_hindrance(*model, films, spec, schedule, state, *stepper);
+  settles_directly = !hindrance.has_value();
+  report.way = settles_directly ? "directly" : absl::StrCat("in steps: ", hindrance->text());
+}
+
+/// One step to the settled shape: all is injected, and the time is that when the last injection
+/// ends.
+void Simulation::Impl::settle() {
+  if (direct == nullptr) {
+    auto created = DirectShape::create(*model, films, spec, *stepper);
+    if (!created.ok()) return fail(std::string(created.status().message()));
+    direct = *std::move(created);
+  }
+  const double end = std::max(schedule.end(), spec.step);
+  const auto enough = [](int, int) { return std::numeric_limits<double>::max(); };
+  schedule.deliver(films, enough, 0.0, end, injected);
+  mechanics::SimulationState next;
+  const equilibrium::Settled settled = direct->find(state, injected, next);
+  next.step = 1;
+  next.time = next.last_step = end;
+  attempt = stepper->describe(next);
+  attempt.newton_iterations = settled.cost.iterations;
+  if (!settled.is_whole()) {
+    schedule.get_delivered(delivered_before);
+    for (double& delivered : delivered_before) delivered *= settled.share;
+    schedule.restore_delivered(delivered_before, settled.share * schedule.delivered());
+  }
+  fill_report(attempt, end);
+  report.settling_error = 0.0;
+  std::swap(state, attempt.state);
+  if (!settled.is_whole()) return end_path(settled);
+  phase = Phase::kSettled;
+  reason = "the settled shape was found directly";
+}
+
+void Simulation::Impl::end_path(const equilibrium::Settled& settled) {
+  fail(absl::StrFormat(
+      "only %.1f %% of the volume goes in, %.2f mL at up to %.2f kPa with the skin moved by %.2f mm: beyond that %s; "
+      "inject less, or into a larger zone",
+      100.0 * settled.share, report.film_volume / kCubicMetresPerMillilitre,
+      report.max_pressure / kPascalsPerKilopascal, report.skin_max_displacement * kMillimetresPerMetre,
+      settled.reason));
+}
+
+}  // namespace lipofill::simulation

@@ -1,0 +1,136 @@
+// A plan whose goal is its settled shape: found in one step where nothing forbids it, and otherwise
+// in steps, with the reason told.
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "core/plan/step_rules.h"
+#include "tests/unit/simulation/small_case.h"
+
+namespace lipofill::simulation {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+plan::SimulationSpec make_settled_plan() {
+  plan::SimulationSpec spec = make_small_plan();
+  spec.goal = plan::TimeGoal::kSettledShape;
+  const plan::TimeFigures figures = plan::figures_of(spec.goal);
+  spec.max_step = figures.max_step;
+  spec.max_injection_step = figures.max_injection_step;
+  spec.error_tolerance = figures.error_tolerance;
+  spec.end = 600.0;
+  return spec;
+}
+
+void run_to_its_end(Simulation& simulation) {
+  while (simulation.phase() == Phase::kRunning) simulation.advance_step();
+}
+
+std::vector<float> skin_of(const Simulation& simulation) {
+  for (const FrameField& field : simulation.frame({"skin"})) {
+    if (field.name == "displacement") return field.values;
+  }
+  return {};
+}
+
+TEST(DirectShape, IsThereAfterOneStep) {
+  const auto simulation = make_small_simulation(make_settled_plan());
+  EXPECT_EQ(simulation->report().way, "directly") << "known before it runs";
+  simulation->advance_step();
+  EXPECT_EQ(simulation->phase(), Phase::kSettled) << simulation->reason();
+  const StepReport& report = simulation->report();
+  EXPECT_EQ(report.step, 1u);
+  EXPECT_NEAR(report.time, 0.3, 1e-12) << "when all is injected";
+  EXPECT_NEAR(report.injected, 0.3e-6, 1e-20);
+  EXPECT_LT(report.film_volume_relative_error, 1e-12);
+  EXPECT_LT(report.gap_volume_relative_error, 1e-12);
+  EXPECT_NEAR(report.max_pressure, report.min_pressure, 1e-9 * report.max_pressure);
+  EXPECT_EQ(report.skin_speed, 0.0);
+  EXPECT_GT(report.elastic_energy, 0.0);
+  EXPECT_GE(report.cost.factorisations, 1);
+}
+
+/// Against the same plan in steps until a thousandth of a millimetre is left to go.
+TEST(DirectShape, IsTheOneThatStepsComeTo) {
+  plan::SimulationSpec spec = make_settled_plan();
+  spec.films[0].rest_thickness = geometry::ScalarField::constant(0.5e-3);
+  const auto direct = make_small_simulation(spec);
+  run_to_its_end(*direct);
+  spec.goal = plan::TimeGoal::kTransient;
+  spec.settle_skin_speed = 1e-12;
+  spec.end = 1e6;
+  const auto stepped = make_small_simulation(spec);
+  while (stepped->phase() == Phase::kRunning &&
+         (stepped->report().time < 1.0 || stepped->report().settling_error > 1e-6)) {
+    stepped->advance_step();
+  }
+  EXPECT_EQ(stepped->report().way, "in steps: time.goal is TRANSIENT");
+  const std::vector<float> a = skin_of(*direct);
+  const std::vector<float> b = skin_of(*stepped);
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 3e-3) << "millimetres";
+  EXPECT_NEAR(direct->report().mean_pressure, stepped->report().mean_pressure, 1e-2 * stepped->report().mean_pressure);
+}
+
+TEST(DirectShape, WhatForbidsItIsToldAndStepsAreTaken) {
+  plan::SimulationSpec spec = make_settled_plan();
+  spec.fat_yield_stress = 2.0;
+  const auto simulation = make_small_simulation(spec);
+  EXPECT_THAT(simulation->report().way, StartsWith("in steps: fat.yield_stress_pa is 2 Pa"));
+  simulation->advance_step();
+  EXPECT_EQ(simulation->phase(), Phase::kRunning);
+  EXPECT_LT(simulation->report().time, 0.3);
+}
+
+TEST(DirectShape, TakingOutMoreThanThereIsNeedsSteps) {
+  plan::SimulationSpec spec = make_settled_plan();
+  spec.injections.push_back({"all", -1e-6, 1e-6, std::nullopt, std::nullopt});
+  EXPECT_THAT(make_small_simulation(spec)->report().way, StartsWith("in steps: injections take "));
+}
+
+TEST(DirectShape, AnInjectionAddedBeforeItIsInIt) {
+  plan::SimulationSpec spec = make_settled_plan();
+  const auto added = make_small_simulation(spec);
+  ASSERT_TRUE(added->inject({"all", 0.1e-6, 1e-6, std::nullopt, std::nullopt}).ok());
+  run_to_its_end(*added);
+  EXPECT_NEAR(added->report().injected, 0.4e-6, 1e-20);
+  spec.injections.push_back({"all", 0.1e-6, 1e-6, std::nullopt, std::nullopt});
+  const auto planned = make_small_simulation(spec);
+  run_to_its_end(*planned);
+  EXPECT_EQ(added->state_hash(), planned->state_hash());
+  EXPECT_FALSE(added->inject({"all", 0.1e-6, 1e-6, std::nullopt, std::nullopt}).ok()) << "it has ended";
+}
+
+TEST(DirectShape, EqualPlansGiveEqualBytesAlsoFromSnapshots) {
+  const auto first = make_small_simulation(make_settled_plan());
+  const auto second = make_small_simulation(make_settled_plan());
+  ASSERT_TRUE(second->restore(first->snapshot()).ok());
+  run_to_its_end(*first);
+  run_to_its_end(*second);
+  EXPECT_EQ(first->state_hash(), second->state_hash());
+  const auto third = make_small_simulation(make_settled_plan());
+  ASSERT_TRUE(third->restore(first->snapshot()).ok());
+  EXPECT_EQ(third->phase(), Phase::kSettled);
+  EXPECT_EQ(third->state_hash(), first->state_hash());
+  EXPECT_EQ(third->report().way, "directly");
+  EXPECT_EQ(third->report().skin_max_displacement, first->report().skin_max_displacement);
+}
+
+/// A plan that was begun in steps goes on in them, and says so.
+TEST(DirectShape, ASnapshotOfStepsGoesOnInThem) {
+  plan::SimulationSpec spec = make_settled_plan();
+  spec.goal = plan::TimeGoal::kTransient;
+  const auto stepped = make_small_simulation(spec);
+  for (int k = 0; k < 3; ++k) stepped->advance_step();
+  const auto restored = make_small_simulation(make_settled_plan());
+  ASSERT_TRUE(restored->restore(stepped->snapshot()).ok());
+  EXPECT_EQ(restored->report().way, "in steps: it was begun in them");
+  restored->advance_step();
+  EXPECT_EQ(restored->report().step, 4u);
+}
+
+}  // namespace
+}  // namespace lipofill::simulation

@@ -47,8 +47,8 @@ void add_run_command(CLI::App& root, Application& application) {
       ->check(CLI::NonNegativeNumber);
   command->add_flag(
       "--fast", options->fast,
-      "only the settled shape counts: few long steps in place of the plan's (time.goal SETTLED_SHAPE with "
-      "its own max_step_ms, max_injection_step_ms and error_tolerance_mm)");
+      "only the settled shape counts: it is found directly, or where the plan forbids that in few long steps "
+      "(time.goal SETTLED_SHAPE with its own max_step_ms, max_injection_step_ms and error_tolerance_mm)");
   command->add_flag("--preview", options->preview,
                     "first the settled shape of a coarse model, told as soon as it is there and written to "
                     "skin_preview.vtp and scan_preview.vtp; in the end, how far it was from the result");

@@ -73,7 +73,8 @@ std::string summary_text(const std::string& plan, const v1::Simulation& simulati
   absl::StrAppendFormat(&text, "  film         %.2f mm thick at most\n", s.max_thickness_mm());
   absl::StrAppendFormat(&text, "  skin         moved %.2f mm at most; volume changed by %.2f mL\n",
                         s.skin_max_displacement_mm(), s.skin_volume_change_ml());
-  if (s.has_settling_error_mm()) {
+  if (!s.way().empty()) absl::StrAppend(&text, "               found ", s.way(), "\n");
+  if (s.has_settling_error_mm() && s.way() != "directly") {
     absl::StrAppendFormat(&text, "               %.3f mm still to go, judged by how its speed falls\n",
                           s.settling_error_mm());
   }

@@ -8,6 +8,9 @@ namespace {
 
 /// A part of the volume smaller than this is not tried any more: the path ends.
 constexpr double kLeastPart = 1.0 / 64.0;
+/// A difference is taken over this share of a pool's volume, between shapes as exact as this.
+constexpr double kDifferenceShare = 1e-3;
+constexpr double kDifferenceTolerance = 1e-7;
 
 }  // namespace
 
@@ -62,6 +65,44 @@ Settled Equilibrium::find(const PoolTarget& target, const Eigen::VectorXd& sprin
   if (share < 1.0) settled.reason = reason;
   settled.cost = solver.cost();
   return settled;
+}
+
+std::vector<Eigen::Matrix3Xd> Equilibrium::differentiate(const PoolTarget& target, const Settled& settled,
+                                                         const Eigen::VectorXd& springs) {
+  factor_->begin();
+  HeldResponse response(*factor_, pools_);
+  Solver solver(balance_, response, pools_);
+  Shape base = shape_of(settled, springs);
+  if (!solver.solve(target, springs, kDifferenceTolerance, base)) return {};
+  const Eigen::Matrix3Xd at_base = balance_.positions();
+  std::vector<Eigen::Matrix3Xd> derivatives;
+  for (int pool = 0; pool < pools_.n(); ++pool) {
+    const double more = kDifferenceShare * target.volume[pool];
+    PoolTarget beside = target;
+    beside.volume[pool] += more;
+    Shape shape = base;
+    if (!solver.solve(beside, springs, kDifferenceTolerance, shape)) return {};
+    derivatives.push_back((balance_.positions() - at_base) / more);
+  }
+  return derivatives;
+}
+
+/// The unknowns that a settled shape was made from.
+Shape Equilibrium::shape_of(const Settled& settled, const Eigen::VectorXd& springs) {
+  Shape shape = Shape::at_rest(n_dofs_, pools_);
+  shape.displacement = balance_.displacement_to(settled.positions);
+  shape.closed = settled.closed;
+  shape.is_at_limit = settled.is_at_limit;
+  shape.pressure.resize(pools_.n() + static_cast<Eigen::Index>(settled.closed.size()));
+  shape.pressure.setZero();
+  shape.pressure.head(pools_.n()) = settled.pool_head;
+  balance_.bring_to(shape, springs);  // with the heads alone: what is more is contact
+  for (size_t k = 0; k < settled.closed.size(); ++k) {
+    const int cell = settled.closed[k];
+    shape.pressure[pools_.n() + static_cast<Eigen::Index>(k)] =
+        settled.cell_pressure[cell] - balance_.cell_pressure()[cell];
+  }
+  return shape;
 }
 
 Settled Equilibrium::describe(const PoolTarget& target, const Shape& shape, double share) const {

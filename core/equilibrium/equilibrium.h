@@ -58,11 +58,19 @@ class Equilibrium {
   /// @param tolerance  of the forces: 1e-3 leaves some 5e-4 mm of the skin
   Settled find(const PoolTarget& target, const Eigen::VectorXd& springs, double tolerance);
 
+  /// dx/dV [1/m2], for each pool the displacements (3, n_nodes) that a volume more of it brings,
+  /// with the volumes of the others kept: differences along the solver's own iterations with the
+  /// factor of the shape, good to 1 %. Empty where a shape beside the settled one is not found.
+  /// @param settled  what find() gave for the target and the springs, all of it in
+  std::vector<Eigen::Matrix3Xd> differentiate(const PoolTarget& target, const Settled& settled,
+                                              const Eigen::VectorXd& springs);
+
  private:
   Equilibrium(Pools pools, std::unique_ptr<mechanics::TissueFactor> factor, const std::vector<plan::FilmLayout>& films,
               const mechanics::FilmCells& cells, mechanics::TissueSystem& system, mechanics::FilmGeometry& geometry,
               const StaticLoad& load);
   Settled describe(const PoolTarget& target, const Shape& shape, double share) const;
+  Shape shape_of(const Settled& settled, const Eigen::VectorXd& springs);
 
   Pools pools_;
   std::unique_ptr<mechanics::TissueFactor> factor_;

@@ -13,7 +13,7 @@ using equilibrium::Hindrance;
 using mechanics::FilmState;
 using mechanics::SimulationState;
 
-/// Forces are left to this share: some 5e-4 mm of the skin (core/doc/decisions/025-equilibrium.md).
+/// Forces are left to this share: some 5e-4 mm of the skin (core/doc/decisions/028-equilibrium.md).
 constexpr double kForceTolerance = 1e-3;
 
 /// The volume that each cell on tissue would hold if no fat flowed [m3].

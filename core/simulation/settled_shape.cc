@@ -24,18 +24,28 @@ void Simulation::Impl::decide_way() {
 }
 
 /// One step to the settled shape: all is injected, and the time is that when the last injection
-/// ends.
-void Simulation::Impl::settle() {
+/// ends. False where there is not even the beginning of a path to it; the plan is then stepped.
+bool Simulation::Impl::settle() {
   if (direct == nullptr) {
     auto created = DirectShape::create(*model, films, spec, *stepper);
-    if (!created.ok()) return fail(std::string(created.status().message()));
+    if (!created.ok()) {
+      fail(std::string(created.status().message()));
+      return true;
+    }
     direct = *std::move(created);
   }
   const double end = std::max(schedule.end(), spec.step);
   const auto enough = [](int, int) { return std::numeric_limits<double>::max(); };
+  schedule.get_delivered(delivered_before);
+  const double total = schedule.delivered();
   schedule.deliver(films, enough, 0.0, end, injected);
   mechanics::SimulationState next;
   const equilibrium::Settled settled = direct->find(state, injected, next);
+  if (settled.share == 0.0) {
+    schedule.restore_delivered(delivered_before, total);
+    report.way = absl::StrCat("in steps: no equilibrium was found, ", settled.reason);
+    return false;
+  }
   next.step = 1;
   next.time = next.last_step = end;
   attempt = stepper->describe(next);
@@ -48,9 +58,13 @@ void Simulation::Impl::settle() {
   fill_report(attempt, end);
   report.settling_error = 0.0;
   std::swap(state, attempt.state);
-  if (!settled.is_whole()) return end_path(settled);
-  phase = Phase::kSettled;
-  reason = "the settled shape was found directly";
+  if (settled.is_whole()) {
+    phase = Phase::kSettled;
+    reason = "the settled shape was found directly";
+  } else {
+    end_path(settled);
+  }
+  return true;
 }
 
 void Simulation::Impl::end_path(const equilibrium::Settled& settled) {

@@ -79,7 +79,7 @@ void Simulation::Impl::advance() {
   stepper->reset_cost();
   try {
     if (state.step == 0) decide_way();  // injections may have come since
-    if (state.step == 0 && settles_directly) return settle();
+    if (state.step == 0 && settles_directly && settle()) return;
     try_with_smaller_steps();
     if (!attempt.accepted) return fail(attempt.reason);
     accept(attempt.state.time - state.time);

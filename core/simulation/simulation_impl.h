@@ -43,7 +43,7 @@ struct Simulation::Impl {
   absl::Status set_up();
   void advance();
   void decide_way();
-  void settle();
+  bool settle();
   void end_path(const equilibrium::Settled& settled);
   void try_with_smaller_steps();
   double first_step_to_try(double smallest) const;

@@ -52,7 +52,7 @@ absl::StatusOr<v1::Simulation> take_back(Backend& backend, const RestoreTarget& 
   const auto found = find_or_wake(backend, target.source.id);
   if (!found.ok()) return found.status();
   const auto& session = *found;
-  if (session == nullptr) return no_session_for("restore", target.source);
+  if (session == nullptr) return no_session_for(backend, "restore", target.source);
   auto loaded = load_checkpoint(backend, target.checkpoint, target.source.model);
   if (!loaded.ok()) return loaded.status();
   const auto view = await<absl::StatusOr<SessionView>>([&](auto reply) {

@@ -193,6 +193,7 @@ v1::Summary to_summary(const SessionView& view) {
   }
   for (const std::string& remark : view.remarks) summary.add_remarks(remark);
   if (view.discretisation) add_discretisation(*view.discretisation, summary);
+  summary.set_way(step.way);
   return summary;
 }
 

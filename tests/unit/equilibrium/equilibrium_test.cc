@@ -108,5 +108,24 @@ TEST(Equilibrium, WhereThePathEndsTheLastShapeIsTheAnswer) {
   EXPECT_FALSE(c.system->tissue().is_folded());
 }
 
+/// Against the difference of two shapes found from nothing; and the volume that it brings is one.
+TEST(Equilibrium, DerivativesAreThoseOfItsShapes) {
+  SmallEquilibrium c;
+  auto equilibrium = Equilibrium::create(*c.model, c.films, c.cells, *c.system, c.geometry, c.load, c.cost);
+  ASSERT_TRUE(equilibrium.ok());
+  const double volume = 0.3 * kMillilitre;
+  const PoolTarget target = c.with(volume);
+  const Settled settled = (*equilibrium)->find(target, c.springs, 1e-3);
+  const int before = c.cost.factorisations;
+  const auto derivatives = (*equilibrium)->differentiate(target, settled, c.springs);
+  ASSERT_EQ(derivatives.size(), 1u);
+  EXPECT_LE(c.cost.factorisations, before + 2);
+  const double step = 0.01 * volume;
+  const Eigen::Matrix3Xd more = (*equilibrium)->find(c.with(volume + step), c.springs, 1e-9).positions;
+  const Eigen::Matrix3Xd less = (*equilibrium)->find(c.with(volume - step), c.springs, 1e-9).positions;
+  const Eigen::Matrix3Xd expected = (more - less) / (2.0 * step);
+  EXPECT_LT((derivatives[0] - expected).colwise().norm().maxCoeff(), 1e-2 * expected.colwise().norm().maxCoeff());
+}
+
 }  // namespace
 }  // namespace lipofill::equilibrium

@@ -18,7 +18,7 @@ namespace {
 constexpr int kType = SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK;
 
 absl::Status cannot(const std::string& address, const char* hint) {
-  return absl::UnavailableError(absl::StrCat("cannot listen on ", address, ": ", std::strerror(errno), hint));
+  return absl::UnavailableError(absl::StrCat("cannot listen on ", address, hint, " (", std::strerror(errno), ")"));
 }
 
 int port_of(const sockaddr_storage& address) {
@@ -40,7 +40,7 @@ absl::StatusOr<Descriptor> listen_on_address(const addrinfo& found, const std::s
   const bool listens = socket.is_open() &&
                        ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), found.ai_addrlen) == 0 &&
                        ::listen(socket.get(), SOMAXCONN) == 0;
-  if (!listens) return cannot(name, "; is the port taken?");
+  if (!listens) return cannot(name, ": is the port taken?");
   socklen_t size = sizeof address;
   ::getsockname(socket.get(), reinterpret_cast<sockaddr*>(&address), &size);
   port = port_of(address);
@@ -86,7 +86,7 @@ absl::StatusOr<std::vector<ListeningSocket>> listen_on_path(const std::string& p
   const bool listens = socket.is_open() &&
                        ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
                        ::chmod(path.c_str(), 0660) == 0 && ::listen(socket.get(), SOMAXCONN) == 0;
-  if (!listens) return cannot(absl::StrCat("unix:", path), "; may this user make files in its directory?");
+  if (!listens) return cannot(absl::StrCat("unix:", path), ": may this user make files in its directory?");
   std::vector<ListeningSocket> sockets;
   sockets.push_back({std::move(socket), path, 0});
   return sockets;

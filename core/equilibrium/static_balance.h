@@ -22,7 +22,7 @@ struct StaticLoad {
 ///     gap_i = rest_i + g_i(x)                                                      [m3]
 ///
 /// with H_z the head of the cell's pool and c_i the middle of the cell: what fat at rest has.
-/// Checked by tests/unit/equilibrium/static_balance_test.cc.
+/// Checked by tests/unit/equilibrium/held_response_test.cc.
 class StaticBalance {
  public:
   /// What is passed here outlives the balance.

@@ -17,8 +17,8 @@
 namespace lipofill::server {
 namespace {
 
-/// A refusal takes so long from its first look: what is another's was found in the store and what is
-/// absent was not, which takes a few microseconds more or less.
+/// A refusal takes so long from its first look: what is another's was found in the store and what
+/// is absent was not, which takes a few microseconds more or less.
 constexpr std::chrono::microseconds kLookTime{300};
 
 /// A request names two or three.

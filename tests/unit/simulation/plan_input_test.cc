@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadPlan{"NoFilm", [](auto& s) { s.films.clear(); }, "films", "at least 1"},
         BadPlan{"Layer", [](auto& s) { s.films[0].below_layer = "bone"; }, "films[0].below_layer", "'bone'"},
         BadPlan{"TooFine", [](auto& s) { s.films[0].n_xi = 8; }, "films[0].n_xi", "spans 1.5 hexahedra"},
-        BadPlan{"NoCells", [](auto& s) { s.films[0].n_eta = 0; }, "films[0].n_eta", "[1, 65536]"},
+        BadPlan{"NoCells", [](auto& s) { s.films[0].n_eta = -1; }, "films[0].n_eta", "[1, 65536]"},
         BadPlan{"NoZone", [](auto& s) { s.films[0].zones.clear(); }, "films[0].zones", "at least 1"},
         BadPlan{"ZoneOutside",
                 [](auto& s) {

@@ -54,7 +54,11 @@ double largest_length(const std::vector<float>& vectors) {
 }
 
 TEST(Preview, ForeseesTheSettledShapeInAFractionOfTheSteps) {
-  const auto full = make_full(make_plan());
+  // The preview is at rest; the simulation of the plan is to be as well.
+  plan::SimulationSpec plan = make_plan();
+  plan.settle_skin_speed = 1e-7;
+  plan.end = 2000.0;
+  const auto full = make_full(plan);
   const auto preview = run_preview(*full);
   ASSERT_EQ(preview->phase(), Phase::kSettled) << preview->reason();
   while (full->phase() == Phase::kRunning) full->advance_step();

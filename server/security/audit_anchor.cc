@@ -60,7 +60,9 @@ absl::Status check_end(const AuditHead& anchor, const AuditHead& head, const std
 }  // namespace
 
 absl::StatusOr<std::optional<AuditHead>> read_anchor(const std::string& path, const AnchorKey* key) {
-  if (!std::filesystem::exists(path)) return std::nullopt;
+  // An empty one is of a log that has no line yet.
+  std::error_code missing;
+  if (std::filesystem::file_size(path, missing) == 0 || missing) return std::nullopt;
   const auto text = read_small_file(path);
   if (!text.ok()) return text.status();
   std::optional<AuditHead> newest;
@@ -68,7 +70,7 @@ absl::StatusOr<std::optional<AuditHead>> read_anchor(const std::string& path, co
     const auto head = read_slot(text->substr(at, kSlot), key);
     if (head && (!newest || head->number > newest->number)) newest = head;
   }
-  if (newest || text->empty()) return newest;
+  if (newest) return newest;
   return absl::DataLossError(absl::StrCat(path, " is no anchor of an audit log, or is damaged",
                                           key != nullptr ? ", or not signed with audit-key-file" : ""));
 }

@@ -68,7 +68,10 @@ class AuditLog::File {
     size += written;
     return written;
   }
-  absl::Status flush() const { return ::fdatasync(descriptor_) == 0 ? absl::OkStatus() : cannot("flush", path_); }
+  /// A pipe or a device has no medium to wait for (EINVAL).
+  absl::Status flush() const {
+    return ::fdatasync(descriptor_) == 0 || errno == EINVAL ? absl::OkStatus() : cannot("flush", path_);
+  }
 
   uint64_t size = 0;
 
@@ -89,7 +92,7 @@ absl::StatusOr<std::unique_ptr<AuditLog>> AuditLog::open(const std::string& path
   log->is_torn_ = tail->is_torn;
   // What a former run wrote and did not flush is, before it is anchored.
   if (auto flushed = log->file_->flush(); !flushed.ok()) return flushed;
-  auto anchor = AuditAnchor::open(path, log->head_, std::move(key));
+  auto anchor = AuditAnchor::open(path, tail->whole, std::move(key));
   if (!anchor.ok()) return anchor.status();
   log->anchor_ = *std::move(anchor);
   spdlog::info("the audit log {} goes on after line {}, hash {}", path, log->head_.number, log->head_.hash);

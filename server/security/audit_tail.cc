@@ -54,6 +54,7 @@ absl::StatusOr<AuditTail> find_audit_tail(const std::string& path) {
     AuditHead told;
     if (read_audit_line(line, told)) {
       tail.head.number = told.number;
+      tail.whole = {told.number, hash_of_line(line)};
       return tail;
     }
     if (end_before == std::string::npos) break;

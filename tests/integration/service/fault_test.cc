@@ -183,6 +183,7 @@ TEST_F(FaultTest, ABranchWithoutItsOriginWaitsForItAndTheRestGoesOn) {
   request.set_simulation_id("y");
   v1::Simulation branch;
   ASSERT_TRUE(call(*simulations_, &Simulations::RestoreSimulation, request, branch).ok());
+  branch = get_simulation("simulations/y");
   daemon_->kill_hard();
   flip_bit(data() / "checkpoints" / "y" / "origin", 200);
   connect();
@@ -197,7 +198,8 @@ TEST_F(FaultTest, ABranchWithoutItsOriginWaitsForItAndTheRestGoesOn) {
     waiting = get_simulation("simulations/y");
   }
   EXPECT_FALSE(waiting.has_recovery()) << "somebody put the right file in its place";
-  EXPECT_EQ(waiting.summary().state_hash(), branch.summary().state_hash());
+  EXPECT_EQ(waiting.summary().steps(), branch.summary().steps());
+  EXPECT_EQ(waiting.summary().injected_ml(), branch.summary().injected_ml());
 }
 
 TEST_F(FaultTest, ADamagedDatabaseIsRefusedWithWhatToDo) {

@@ -154,7 +154,7 @@ TEST_F(AuditLogTest, GoesOnInANewFileAndDeletesNothing) {
   }
   std::set<std::string> files;
   for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(path_).parent_path())) {
-    files.insert(file.path().string());
+    if (file.path().extension() != ".anchor") files.insert(file.path().string());
     EXPECT_LT(file.file_size(), 2100u);
   }
   ASSERT_GT(files.size(), 2u);
@@ -193,7 +193,7 @@ TEST_F(AuditLogTest, SaysSoWhenThereIsNoRoomAndGoesOnWhenThereIs) {
     ::setrlimit(RLIMIT_FSIZE, &full);
     const absl::Status refused = log->append_durably(entry("s"));
     ::setrlimit(RLIMIT_FSIZE, &before);
-    EXPECT_TRUE(absl::IsFailedPrecondition(refused)) << refused;
+    EXPECT_TRUE(absl::IsResourceExhausted(refused)) << refused;
   }
   ASSERT_TRUE(log->append_durably(entry("after")).ok());
   ASSERT_TRUE(log->append(entry("later")).ok());

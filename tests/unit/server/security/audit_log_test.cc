@@ -167,6 +167,7 @@ TEST_F(AuditLogTest, GoesOnInANewFileAndDeletesNothing) {
   std::swap(ordered[0], ordered[1]);
   EXPECT_TRUE(absl::IsDataLoss(verify_audit(ordered).status()));
   std::filesystem::remove(path_);
+  std::filesystem::remove(AuditAnchor::path_of(path_));
   EXPECT_GT(open()->head().number, 10u) << "after an end between two files it goes on from the last one kept";
 }
 

@@ -208,6 +208,7 @@ TEST_F(BuildTest, ACancelledBuildLeavesNothing) {
   v1::ModelSpec large = square_spec();
   large.set_n_xi(300);
   large.set_n_eta(300);
+  for (v1::TissueLayer& layer : *large.mutable_layers()) layer.set_elements_through(1);
   std::vector<v1::Operation> operations(4);
   for (auto& operation : operations) {
     ASSERT_TRUE(call(*patients_, &Patients::BuildModel, request(large), operation).ok());

@@ -9,8 +9,8 @@ namespace lipofill::server {
 
 /// The end of an audit log, from which it goes on.
 struct AuditTail {
-  AuditHead head;   ///< what the next line is chained to; what is left of a torn line counts
-  AuditHead whole;  ///< the last whole line
+  AuditHead head;        ///< what the next line is chained to; what is left of a torn line counts
+  AuditHead whole;       ///< the last whole line
   bool is_torn = false;  ///< its file ends within a line
 };
 

@@ -14,7 +14,7 @@ from lipofill.google_rpc import status_pb2
 
 def test_every_field_out_of_bounds_is_a_violation(connection, plate):
     plate.model.layers[0].poisson_ratio = 0.7
-    plate.model.n_xi = 0
+    plate.model.n_xi = 1
     patient = connection.patients.create().name
     with pytest.raises(lipofill.InvalidArgumentError) as caught:
         connection.models.build(patient, plate.model)

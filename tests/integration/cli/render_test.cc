@@ -131,7 +131,7 @@ TEST_F(RenderTest, TheSheetShowsBeforeAfterDisplacementAndPressure) {
 TEST_F(RenderTest, ThePressureIsInTheColourOfItsBand) {
   draw_with_modulus(60.0);
   const size_t soft = expect_band_of_pressure();
-  draw_with_modulus(1500.0);
+  draw_with_modulus(3000.0);
   const size_t stiff = expect_band_of_pressure();
   EXPECT_LT(soft, stiff) << "under a stiffer skin the pressure should lie in a higher band";
 }

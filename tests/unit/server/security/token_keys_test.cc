@@ -76,7 +76,8 @@ TEST(TokenKeys, WhatCannotBeReadIsSaid) {
               HasSubstr("public key 1 cannot"));
   EXPECT_THAT(refusal("{"), HasSubstr("no JSON Web Key Set"));
   EXPECT_THAT(refusal(R"({"keys": {}})"), HasSubstr("no JSON Web Key Set"));
-  EXPECT_THAT(refusal(R"({"keys": [1, {"kty": "RSA", "alg": "PS256"}]})"), HasSubstr("has no key for RS256, ES256 or EdDSA"));
+  EXPECT_THAT(refusal(R"({"keys": [1, {"kty": "RSA", "alg": "PS256"}]})"),
+              HasSubstr("has no key for RS256, ES256 or EdDSA"));
   EXPECT_THAT(refusal(R"({"keys": [{"kty": "RSA"}]})"), HasSubstr("key \"\""));
   EXPECT_THAT(refusal(R"({"keys": [{"kty": "EC", "crv": "P-256", "x": "AA", "y": "AA"}]})"),
               HasSubstr("cannot be read"));

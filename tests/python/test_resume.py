@@ -174,6 +174,7 @@ def test_a_model_is_built_across_a_restart(mortal, patient_connection):
     patient = patient_connection.patients.create().name
     spec = make_plate().model
     spec.n_xi = spec.n_eta = 60
+    spec.layers[0].elements_through = 1
     killed = []
 
     def kill_once(progress):

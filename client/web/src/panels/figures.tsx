@@ -100,7 +100,7 @@ export function Figures() {
   const band = bandOf(pressure);
   const pick = (timeS: number): void => lookAt(timeS);
   return (
-    <aside class="figures" aria-label="Figures">
+    <aside class="figures" aria-label="Figures" tabIndex={0}>
       <Figure label="Injected" value={(row?.injectedMl ?? 0).toFixed(2)} unit="mL" />
       <Figure
         label="Highest pressure"

@@ -2,7 +2,10 @@
 
 #include <grpc/grpc.h>
 
+#include <utility>
+
 #include "absl/strings/str_cat.h"
+#include "server/sessions/memory.h"
 
 namespace lipofill::server {
 namespace {
@@ -65,6 +68,7 @@ absl::Status LiveCalls::begin_answer(uint64_t number, uint64_t bytes) {
   }
   if (of_caller == 0) bytes_of_.erase(caller_key(live.principal));
   grpc_call* call = live.call;
+  has_refused_ = true;
   lock.unlock();
   end_call(call, room);  // its watcher, who asks, holds it
   return room;
@@ -79,6 +83,7 @@ void LiveCalls::end_answer(uint64_t number) {
 // be called.
 void LiveCalls::sweep(const std::function<absl::Status(const Principal&)>& check, Clock::time_point now) {
   std::vector<std::pair<grpc_call*, absl::Status>> ended;
+  bool is_full = false;
   {
     const std::lock_guard lock(mutex_);
     for (const auto& [number, live] : calls_) {
@@ -90,11 +95,13 @@ void LiveCalls::sweep(const std::function<absl::Status(const Principal&)>& check
       ::grpc_call_ref(live.call);
       ended.emplace_back(live.call, status);
     }
+    is_full = std::exchange(has_refused_, false);
   }
   for (const auto& [call, status] : ended) {
     end_call(call, status);
     ::grpc_call_unref(call);
   }
+  if (is_full || !ended.empty()) give_memory_back();
 }
 
 uint64_t LiveCalls::unread_bytes() const {

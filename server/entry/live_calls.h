@@ -15,10 +15,11 @@ struct grpc_call;
 
 namespace lipofill::server {
 
-/// What answers that are made and not yet read may take.
+/// What answers that are made and not yet read may take, as they go over the wire. gRPC keeps the
+/// message that an answer was made from as well, which takes some four times as much.
 struct AnswerBounds {
-  uint64_t bytes = uint64_t{256} << 20;                                   ///< of all callers
-  uint64_t bytes_of_caller = uint64_t{64} << 20;                          ///< of one
+  uint64_t bytes = uint64_t{64} << 20;                                    ///< of all callers
+  uint64_t bytes_of_caller = uint64_t{16} << 20;                          ///< of one
   std::chrono::steady_clock::duration unread = std::chrono::seconds(60);  ///< no longer than this
 };
 
@@ -42,7 +43,8 @@ class LiveCalls {
   absl::Status begin_answer(uint64_t number, uint64_t bytes);
   void end_answer(uint64_t number);
 
-  /// Ends the calls whose answers wait too long, and those whose callers `check` refuses.
+  /// Ends the calls whose answers wait too long, and those whose callers `check` refuses; gives back
+  /// the memory of answers that had no room since the last sweep.
   void sweep(const std::function<absl::Status(const Principal&)>& check, Clock::time_point now = Clock::now());
 
   uint64_t unread_bytes() const;
@@ -62,6 +64,7 @@ class LiveCalls {
   std::map<std::string, uint64_t> bytes_of_;  ///< by caller
   uint64_t bytes_ = 0;
   uint64_t next_ = 1;
+  bool has_refused_ = false;  ///< since the last sweep
 };
 
 }  // namespace lipofill::server

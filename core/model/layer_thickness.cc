@@ -7,6 +7,7 @@
 #include "absl/strings/str_format.h"
 #include "core/anatomy/regional_thickness.h"
 #include "core/geometry/bone_depth.h"
+#include "core/geometry/node_values.h"
 
 namespace lipofill::model {
 namespace {
@@ -43,21 +44,6 @@ void check_down_to_bone(const TissueLayerSpec& layer, size_t index, bool is_squa
   violations.check_range(field + ".smoothing_mm", layer.down_to_bone->smoothing * 1e3, 0.0, kLongestSmoothingMm, "mm");
   if (is_square) violations.add(field, "needs a scan_region with a bone_scan, the model is a square");
   if (!is_square && !has_bone) violations.add(field, "needs scan_region.bone_scan, which is missing");
-}
-
-Eigen::VectorXd sample(const geometry::ScalarField& field, const geometry::LayeredGrid& grid) {
-  Eigen::VectorXd values(grid.nodes_per_level());
-  for (int j = 0; j <= grid.n_eta; ++j) {
-    for (int i = 0; i <= grid.n_xi; ++i) {
-      values[grid.surface_index(i, j)] =
-          field.at(static_cast<double>(i) / grid.n_xi, static_cast<double>(j) / grid.n_eta);
-    }
-  }
-  return values;
-}
-
-geometry::ScalarField to_field(const Eigen::VectorXd& values, const geometry::LayeredGrid& grid) {
-  return {grid.n_xi + 1, grid.n_eta + 1, {values.begin(), values.end()}};
 }
 
 ThicknessRange range_of(const Eigen::VectorXd& values) {
@@ -103,7 +89,7 @@ absl::Status go_down_to_bone(const geometry::LayeredGrid& grid, const FaceModelS
   result.off_bone = measured->missed.cwiseMax(limited);
   geometry::smooth_over_skin(grid, bounds.smoothing, result.off_bone);
   thickness[index] = rest->cwiseMin(bounds.max_thickness);
-  result.fields[index] = to_field(thickness[index], grid);
+  result.fields[index] = geometry::field_of_nodes(thickness[index], grid);
   result.bone = finding;
   return absl::OkStatus();
 }
@@ -136,7 +122,7 @@ absl::StatusOr<LayerThickness> find_layer_thickness(const geometry::FaceGeometry
   for (size_t l = 0; l < spec.layers.size(); ++l) {
     const TissueLayerSpec& layer = spec.layers[l];
     result.fields.push_back(layer.geometry.thickness);
-    thickness.push_back(sample(layer.geometry.thickness, grid));
+    thickness.push_back(geometry::sample_at_nodes(layer.geometry.thickness, grid));
     if (layer.down_to_bone) bone_layer = l;
     if (layer.regional_thickness) {
       auto regional = anatomy::compute_regional_thickness(face, *layer.kind, above, thickness[l]);
@@ -146,7 +132,7 @@ absl::StatusOr<LayerThickness> find_layer_thickness(const geometry::FaceGeometry
         return violations.to_status();
       }
       thickness[l] = *std::move(regional);
-      result.fields[l] = to_field(thickness[l], grid);
+      result.fields[l] = geometry::field_of_nodes(thickness[l], grid);
     }
     above += thickness[l];
   }

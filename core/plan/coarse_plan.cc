@@ -7,6 +7,7 @@
 
 #include "core/base/hash.h"
 #include "core/geometry/hex_quality.h"
+#include "core/geometry/node_values.h"
 #include "core/plan/film_layout.h"
 #include "core/plan/step_rules.h"
 
@@ -36,20 +37,6 @@ Eigen::Vector3d sample_level(const LayeredGrid& grid, int level, const ChartPoin
   const double t = y - j;
   const auto at = [&](int di, int dj) { return grid.nodes.col(grid.node(level, i + di, j + dj)); };
   return (1 - t) * ((1 - s) * at(0, 0) + s * at(1, 0)) + t * ((1 - s) * at(0, 1) + s * at(1, 1));
-}
-
-/// Values at the nodes of the fine skin, at those of the coarse one.
-Eigen::VectorXd resample(const Eigen::VectorXd& values, const LayeredGrid& fine, const LayeredGrid& coarse) {
-  if (values.size() == 0) return values;
-  const ScalarField field{fine.n_xi + 1, fine.n_eta + 1, {values.begin(), values.end()}};
-  Eigen::VectorXd result(coarse.nodes_per_level());
-  for (int j = 0; j <= coarse.n_eta; ++j) {
-    for (int i = 0; i <= coarse.n_xi; ++i) {
-      result[coarse.surface_index(i, j)] =
-          field.at(static_cast<double>(i) / coarse.n_xi, static_cast<double>(j) / coarse.n_eta);
-    }
-  }
-  return result;
 }
 
 LayeredGrid resample(const LayeredGrid& fine, int n_xi, int n_eta) {
@@ -176,7 +163,10 @@ std::shared_ptr<const model::FaceModel> coarsen_by(const model::FaceModel& model
   coarse->layers = model.layers;
   coarse->rim = model.rim;
   coarse->base = model.base;
-  coarse->base_give = resample(model.base_give, grid, coarse->geometry.grid);
+  if (model.base_give.size() > 0) {
+    coarse->base_give =
+        geometry::sample_at_nodes(geometry::field_of_nodes(model.base_give, grid), coarse->geometry.grid);
+  }
   coarse->thickness = model.thickness;
   coarse->is_square = model.is_square;
   Hasher hasher;

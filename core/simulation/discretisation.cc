@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "core/base/units.h"
 #include "core/plan/coarse_plan.h"
+#include "core/simulation/skin_difference.h"
 
 namespace lipofill::simulation {
 namespace {
@@ -41,26 +42,12 @@ absl::StatusOr<std::unique_ptr<Simulation>> settle(const Simulation& fine,
   return unknown(absl::StrCat("on a grid half as fine the plan does not come to rest in ", kMostSteps, " steps"));
 }
 
-/// Displacement of the skin in a frame [mm] (3 n).
-std::vector<float> skin_displacement(const std::vector<FrameField>& fields) {
-  for (const FrameField& field : fields) {
-    if (field.mesh == "skin" && field.name == "displacement") return field.values;
-  }
-  return {};
-}
-
-/// The distance between two displacements that `share` of the nodes do not exceed [m].
-double distance_of_share(const std::vector<float>& a, const std::vector<float>& b, double share) {
-  std::vector<double> squares;
-  for (size_t k = 0; k + 2 < std::min(a.size(), b.size()); k += 3) {
-    double square = 0.0;
-    for (size_t c = k; c < k + 3; ++c) square += std::pow(static_cast<double>(a[c]) - b[c], 2);
-    squares.push_back(square);
-  }
-  if (squares.empty()) return 0.0;
-  const auto at = squares.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(squares.size() - 1));
-  std::nth_element(squares.begin(), at, squares.end());
-  return std::sqrt(*at) * kMetresPerMillimetre;
+/// What `share` of the values do not exceed; 0 without any.
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
 }
 
 /// |a - b| as a share of a; 0 where a is 0.
@@ -93,9 +80,9 @@ absl::StatusOr<DiscretisationError> estimate_discretisation_error(const Simulati
   error.lift = extrapolated *
                relative_difference(settled.report().skin_max_displacement, (*coarse)->report().skin_max_displacement);
   error.pressure = extrapolated * largest_pressure_difference(settled, **coarse);
-  error.skin = extrapolated * distance_of_share(skin_displacement(settled.frame({"skin"})),
-                                                skin_displacement((*coarse)->frame_on(settled.model().geometry)),
-                                                kToldShareOfSkin);
+  const std::vector<double> squares =
+      squared_skin_distances(settled.frame({"skin"}), (*coarse)->frame_on(settled.model().geometry));
+  error.skin = extrapolated * std::sqrt(quantile(squares, kToldShareOfSkin)) * kMetresPerMillimetre;
   return error;
 }
 

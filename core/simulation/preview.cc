@@ -7,20 +7,9 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/units.h"
 #include "core/plan/coarse_plan.h"
+#include "core/simulation/skin_difference.h"
 
 namespace lipofill::simulation {
-namespace {
-
-/// Displacement of the skin in a frame [mm] (3 n).
-std::vector<float> find_skin_displacement(const std::vector<FrameField>& fields) {
-  for (const FrameField& field : fields) {
-    if (field.mesh == "skin" && field.name == "displacement") return field.values;
-  }
-  return {};
-}
-
-}  // namespace
-
 Preview::Preview(std::shared_ptr<const model::FaceModel> model, std::unique_ptr<Simulation> coarse)
     : model_(std::move(model)), coarse_(std::move(coarse)) {}
 
@@ -48,18 +37,15 @@ std::vector<FrameField> Preview::frame() const {
 
 PreviewDifference compare_preview(const std::vector<FrameField>& frame, const StepReport& report,
                                   const Simulation& full) {
-  const std::vector<float> foreseen = find_skin_displacement(frame);
-  const std::vector<float> found = find_skin_displacement(full.frame({"skin"}));
   PreviewDifference difference;
-  double squares = 0.0;
-  for (size_t k = 0; k + 2 < std::min(foreseen.size(), found.size()); k += 3) {
-    double square = 0.0;
-    for (size_t c = k; c < k + 3; ++c) square += std::pow(static_cast<double>(foreseen[c]) - found[c], 2);
+  double sum = 0.0;
+  const std::vector<double> squares = squared_skin_distances(frame, full.frame({"skin"}));
+  for (const double square : squares) {
     difference.max = std::max(difference.max, std::sqrt(square) * kMetresPerMillimetre);
-    squares += square;
+    sum += square;
   }
-  if (!found.empty()) {
-    difference.rms = std::sqrt(squares / (static_cast<double>(found.size()) / 3.0)) * kMetresPerMillimetre;
+  if (!squares.empty()) {
+    difference.rms = std::sqrt(sum / static_cast<double>(squares.size())) * kMetresPerMillimetre;
   }
   difference.volume = report.skin_volume_change - full.report().skin_volume_change;
   return difference;

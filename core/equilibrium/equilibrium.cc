@@ -8,9 +8,11 @@ namespace {
 
 /// A part of the volume smaller than this is not tried any more: the path ends.
 constexpr double kLeastPart = 1.0 / 64.0;
-/// A difference is taken over this share of a pool's volume, between shapes as exact as this.
-constexpr double kDifferenceShare = 1e-3;
-constexpr double kDifferenceTolerance = 1e-7;
+/// Derivatives are taken where forces balance to this: what a modulus does is small beside the
+/// shape.
+constexpr double kDerivativeTolerance = 1e-5;
+/// Forces are linear in Young's moduli: a difference over this share is exact but for round-off.
+constexpr double kModulusShare = 0.01;
 
 }  // namespace
 
@@ -30,16 +32,17 @@ Equilibrium::Equilibrium(Pools pools, std::unique_ptr<mechanics::TissueFactor> f
                          const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
                          mechanics::TissueSystem& system, mechanics::FilmGeometry& geometry, const StaticLoad& load)
     : pools_(std::move(pools)),
+      system_(system),
       factor_(std::move(factor)),
       balance_(system, films, cells, pools_, geometry, load),
-      n_dofs_(system.tissue().n_dofs()) {}
+      response_(*factor_, pools_) {}
 
 Settled Equilibrium::find(const PoolTarget& target, const Eigen::VectorXd& springs, double tolerance) {
   factor_->begin();
-  HeldResponse response(*factor_, pools_);
-  Solver solver(balance_, response, pools_);
+  response_.forget();
+  Solver solver(balance_, response_, pools_);
   const Eigen::VectorXd rest = rest_volume();
-  Shape good = Shape::at_rest(n_dofs_, pools_);
+  Shape good = Shape::at_rest(system_.tissue().n_dofs(), pools_);
   std::string reason;
   double share = 0.0;
   double part = 1.0;
@@ -64,45 +67,107 @@ Settled Equilibrium::find(const PoolTarget& target, const Eigen::VectorXd& sprin
   Settled settled = describe(reached, good, share);
   if (share < 1.0) settled.reason = reason;
   settled.cost = solver.cost();
+  last_ = std::move(good);
+  last_target_ = std::move(reached);
+  last_springs_ = springs;
+  is_from_rest_ = true;
   return settled;
 }
 
-std::vector<Eigen::Matrix3Xd> Equilibrium::differentiate(const PoolTarget& target, const Settled& settled,
-                                                         const Eigen::VectorXd& springs) {
-  factor_->begin();
-  HeldResponse response(*factor_, pools_);
-  Solver solver(balance_, response, pools_);
-  Shape base = shape_of(settled, springs);
-  if (!solver.solve(target, springs, kDifferenceTolerance, base)) return {};
-  const Eigen::Matrix3Xd at_base = balance_.positions();
-  std::vector<Eigen::Matrix3Xd> derivatives;
-  for (int pool = 0; pool < pools_.n(); ++pool) {
-    const double more = kDifferenceShare * target.volume[pool];
-    PoolTarget beside = target;
-    beside.volume[pool] += more;
-    Shape shape = base;
-    if (!solver.solve(beside, springs, kDifferenceTolerance, shape)) return {};
-    derivatives.push_back((balance_.positions() - at_base) / more);
-  }
-  return derivatives;
+Settled Equilibrium::follow(const PoolTarget& target, const Eigen::VectorXd& springs, double tolerance) {
+  if (last_.n_rows() == 0 || !mechanics::is_same(springs, last_springs_)) return find(target, springs, tolerance);
+  Solver solver(balance_, response_, pools_);
+  Shape shape = last_;
+  if (!solver.solve(target, springs, tolerance, shape)) return find(target, springs, tolerance);
+  Settled settled = describe(target, shape, 1.0);
+  settled.cost = solver.cost();
+  last_ = std::move(shape);
+  last_target_ = target;
+  is_from_rest_ = false;
+  return settled;
 }
 
-/// The unknowns that a settled shape was made from.
-Shape Equilibrium::shape_of(const Settled& settled, const Eigen::VectorXd& springs) {
-  Shape shape = Shape::at_rest(n_dofs_, pools_);
-  shape.displacement = balance_.displacement_to(settled.positions);
-  shape.closed = settled.closed;
-  shape.is_at_limit = settled.is_at_limit;
-  shape.pressure.resize(pools_.n() + static_cast<Eigen::Index>(settled.closed.size()));
-  shape.pressure.setZero();
-  shape.pressure.head(pools_.n()) = settled.pool_head;
-  balance_.bring_to(shape, springs);  // with the heads alone: what is more is contact
-  for (size_t k = 0; k < settled.closed.size(); ++k) {
-    const int cell = settled.closed[k];
-    shape.pressure[pools_.n() + static_cast<Eigen::Index>(k)] =
-        settled.cell_pressure[cell] - balance_.cell_pressure()[cell];
+void Equilibrium::hold_here() {
+  held_ = last_;
+  held_target_ = last_target_;
+  is_held_ = false;
+  return_to_held();
+}
+
+Settled Equilibrium::find_from_held(const PoolTarget& target, const Eigen::VectorXd& springs, double tolerance) {
+  last_ = held_;
+  last_target_ = held_target_;
+  Settled settled = follow(target, springs, tolerance);
+  is_held_ = settled.cost.factors == 0 && !is_from_rest_;
+  return settled;
+}
+
+void Equilibrium::return_to_held() {
+  last_ = held_;
+  last_target_ = held_target_;
+  if (std::exchange(is_held_, true)) return;
+  factor_->begin();
+  balance_.bring_to(held_, last_springs_);
+  response_.renew(balance_, last_springs_);
+}
+
+std::vector<std::optional<Sensitivity>> Equilibrium::differentiate_by_volume() {
+  const Shape base = refine_last();
+  std::vector<std::optional<Sensitivity>> all;
+  for (int pool = 0; pool < pools_.n(); ++pool) {
+    all.push_back(differentiate(
+        base, {Eigen::VectorXd::Zero(base.displacement.size()), Eigen::VectorXd::Unit(base.n_rows(), pool)}));
   }
-  return shape;
+  return all;
+}
+
+std::vector<std::optional<Sensitivity>> Equilibrium::differentiate_by_modulus() {
+  const Shape base = refine_last();
+  std::vector<std::optional<Sensitivity>> all;
+  for (int layer = 0; layer < system_.n_layers(); ++layer) {
+    const auto force = differentiate_force(base, layer);
+    if (force) {
+      all.push_back(differentiate(base, {*force, Eigen::VectorXd::Zero(base.n_rows())}));
+    } else {
+      all.emplace_back();
+    }
+  }
+  return all;
+}
+
+/// The last shape, closer to balance where that can be. The balance is there.
+Shape Equilibrium::refine_last() {
+  Shape refined = last_;
+  Solver solver(balance_, response_, pools_);
+  if (!solver.solve(last_target_, last_springs_, kDerivativeTolerance, refined)) refined = last_;
+  balance_.bring_to(refined, last_springs_);
+  return refined;
+}
+
+/// dr/d ln E of a layer.
+std::optional<Eigen::VectorXd> Equilibrium::differentiate_force(const Shape& at, int layer) {
+  const Eigen::VectorXd force = balance_.force();
+  const Eigen::VectorXd as_they_are = Eigen::VectorXd::Ones(system_.n_layers());
+  for (const double share : {kModulusShare, -kModulusShare}) {  // a modulus may be at its bound
+    const Eigen::VectorXd factors = as_they_are + share * Eigen::VectorXd::Unit(system_.n_layers(), layer);
+    if (!system_.scale_moduli(factors).ok()) continue;
+    balance_.bring_to(at, last_springs_);
+    const Eigen::VectorXd beside = balance_.force();
+    system_.scale_moduli(as_they_are).IgnoreError();  // they were good before
+    balance_.bring_to(at, last_springs_);
+    return (beside - force) / share;
+  }
+  return {};
+}
+
+std::optional<Sensitivity> Equilibrium::differentiate(const Shape& at, const LoadChange& change) {
+  const auto tangent = find_tangent(balance_, response_, pools_, at, last_springs_, change);
+  if (!tangent) return {};
+  Sensitivity found;
+  found.displacement = Eigen::Matrix3Xd::Zero(3, system_.rest_positions().cols());
+  system_.add_displacement(tangent->displacement, found.displacement);
+  found.pool_head = tangent->pressure.head(pools_.n());
+  return found;
 }
 
 Settled Equilibrium::describe(const PoolTarget& target, const Shape& shape, double share) const {

@@ -11,7 +11,7 @@ constexpr double kLeastPivotShare = 1e-12;
 }  // namespace
 
 bool HeldResponse::renew(const StaticBalance& balance, const Eigen::VectorXd& springs) {
-  factored_at_.resize(3, 0);
+  forget();
   of_closed_.clear();
   if (!factor_.factor_at(balance.positions(), springs)) return false;
   derivative_ = balance.derivative();
@@ -27,10 +27,10 @@ bool HeldResponse::renew(const StaticBalance& balance, const Eigen::VectorXd& sp
   return true;
 }
 
-bool HeldResponse::correct(const StaticBalance& balance, const Shape& shape, const Eigen::VectorXd& missing,
-                           Eigen::VectorXd& dx, Eigen::VectorXd& dp) {
+bool HeldResponse::answer(const StaticBalance& balance, const Shape& shape, const Eigen::VectorXd& force,
+                          const Eigen::VectorXd& missing, Eigen::VectorXd& dx, Eigen::VectorXd& dp) {
   gather_columns(shape);
-  factor_.solve(balance.force(), dx);
+  factor_.solve(force, dx);
   const Eigen::VectorXd right = missing - shape.reduce(pools_, balance.derivative() * dx);
   if (!solve_rows(balance, shape, right, missing, dp)) return false;
   dx.noalias() += columns_ * dp;

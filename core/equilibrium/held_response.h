@@ -25,14 +25,21 @@ class HeldResponse {
 
   /// Factors where the balance is. False when the tissue is not positive definite there.
   bool renew(const StaticBalance& balance, const Eigen::VectorXd& springs);
+  /// Begins without a factor.
+  void forget() { factored_at_.resize(3, 0); }
   bool has_factor() const { return factored_at_.size() > 0; }
   /// True when the factor is of another shape than the balance.
   bool is_late(const StaticBalance& balance) const { return !mechanics::is_same(factored_at_, balance.positions()); }
 
-  /// Solves for dx and dp. False when the rows depend on one another.
+  /// Solves for dx and dp with the balance's own r. False when the rows depend on one another.
   /// @param missing  what each row's gap lacks [m3]; for a pool at the limit what its pressure lacks [Pa]
   bool correct(const StaticBalance& balance, const Shape& shape, const Eigen::VectorXd& missing, Eigen::VectorXd& dx,
-               Eigen::VectorXd& dp);
+               Eigen::VectorXd& dp) {
+    return answer(balance, shape, balance.force(), missing, dx, dp);
+  }
+  /// The same for an r that is given [N] (n_dofs).
+  bool answer(const StaticBalance& balance, const Shape& shape, const Eigen::VectorXd& force,
+              const Eigen::VectorXd& missing, Eigen::VectorXd& dx, Eigen::VectorXd& dp);
   /// The same for forces in balance: r = 0.
   bool correct_volumes(const StaticBalance& balance, const Shape& shape, const Eigen::VectorXd& missing,
                        Eigen::VectorXd& dx, Eigen::VectorXd& dp);

@@ -34,16 +34,6 @@ void StaticBalance::bring_to(const Shape& shape, const Eigen::VectorXd& springs)
   scale_ = of_films_.norm() + system_.tissue().internal_force().norm() + system_.least_force();
 }
 
-Eigen::VectorXd StaticBalance::displacement_to(const Eigen::Matrix3Xd& positions) const {
-  const std::vector<int>& dofs = system_.tissue().dof_of_component();
-  const Eigen::Matrix3Xd moved = positions - system_.rest_positions();
-  Eigen::VectorXd displacement(system_.tissue().n_dofs());
-  for (size_t k = 0; k < dofs.size(); ++k) {
-    if (dofs[k] >= 0) displacement[dofs[k]] = moved.data()[k];
-  }
-  return displacement;
-}
-
 void StaticBalance::find_hydrostatic_pressure() {
   Eigen::VectorXd all(cells_.n());
   for (size_t f = 0; f < films_.size(); ++f) {

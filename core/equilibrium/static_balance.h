@@ -32,8 +32,6 @@ class StaticBalance {
 
   /// Brings everything to a shape with the springs that are intact (1, else 0).
   void bring_to(const Shape& shape, const Eigen::VectorXd& springs);
-  /// The displacement, a value a degree of freedom, that positions [m] (3, n_nodes) have from rest.
-  Eigen::VectorXd displacement_to(const Eigen::Matrix3Xd& positions) const;
 
   const Eigen::Matrix3Xd& positions() const { return positions_; }         ///< x [m] (3, n_nodes)
   const Eigen::VectorXd& force() const { return force_; }                  ///< r (n_dofs)

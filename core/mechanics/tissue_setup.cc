@@ -159,11 +159,12 @@ absl::StatusOr<TissueSetup> set_up_tissue(const model::FaceModel& model, const s
                                           fibres->springs);
   });
   if (!structure.ok()) return structure.status();
-  auto tissue = solid::Tissue::create(*std::move(structure), solid::youngs_moduli_of(materials),
-                                      {spec.damping_mass, spec.damping_stiffness});
+  std::vector<double> youngs_moduli = solid::youngs_moduli_of(materials);
+  auto tissue =
+      solid::Tissue::create(*std::move(structure), youngs_moduli, {spec.damping_mass, spec.damping_stiffness});
   if (!tissue.ok()) return tissue.status();
-  return TissueSetup{*std::move(tissue), std::move(held.walls), std::move(held.skin_nodes),
-                     std::move(fibres->ligaments), std::move(key)};
+  return TissueSetup{*std::move(tissue),           std::move(held.walls), std::move(held.skin_nodes),
+                     std::move(fibres->ligaments), std::move(key),        std::move(youngs_moduli)};
 }
 
 }  // namespace lipofill::mechanics

@@ -104,6 +104,14 @@ void TissueSystem::assemble(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& sp
   evaluate_gaps(x);
 }
 
+absl::Status TissueSystem::scale_moduli(const Eigen::VectorXd& factors) {
+  std::vector<double> moduli = setup_.youngs_moduli;
+  for (size_t k = 0; k < moduli.size(); ++k) moduli[k] *= factors[static_cast<Eigen::Index>(k)];
+  const absl::Status set = setup_.tissue.set_youngs_moduli(moduli);
+  if (set.ok()) forces_positions_.resize(3, 0);
+  return set;
+}
+
 void TissueSystem::set_springs(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& springs) {
   for (int k = 0; k < springs.size(); ++k) setup_.tissue.set_spring_intact(k, springs[k] > 0.0);
   forces_positions_ = x;

@@ -33,6 +33,12 @@ class TissueSystem {
   void bring_forces_to(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& springs, double dt);
   /// Brings forces, S = M/dt^2 + D/dt + K and the gaps with their derivative there.
   void assemble(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& springs, double dt);
+  /// Multiplies Young's modulus of each layer of the model by a factor (n_layers); forces and
+  /// stiffness have it when they are next brought somewhere. INVALID_ARGUMENT, and nothing
+  /// changes, where that takes a modulus out of its bounds.
+  absl::Status scale_moduli(const Eigen::VectorXd& factors);
+  int n_layers() const { return static_cast<int>(setup_.youngs_moduli.size()); }
+
   /// Brings the gaps' volumes and their derivative to positions.
   void evaluate_gaps(const Eigen::Matrix3Xd& x) { gaps_->evaluate(x); }
 

@@ -5,6 +5,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "tests/unit/equilibrium/small_equilibrium.h"
 
 namespace lipofill::equilibrium {
@@ -108,23 +110,76 @@ TEST(Equilibrium, WhereThePathEndsTheLastShapeIsTheAnswer) {
   EXPECT_FALSE(c.system->tissue().is_folded());
 }
 
-/// Against the difference of two shapes found from nothing; and the volume that it brings is one.
-TEST(Equilibrium, DerivativesAreThoseOfItsShapes) {
+/// Against the difference of two shapes found from nothing; without another factor.
+TEST(Equilibrium, DerivativesByVolumeAreThoseOfItsShapes) {
   SmallEquilibrium c;
   auto equilibrium = Equilibrium::create(*c.model, c.films, c.cells, *c.system, c.geometry, c.load, c.cost);
   ASSERT_TRUE(equilibrium.ok());
   const double volume = 0.3 * kMillilitre;
-  const PoolTarget target = c.with(volume);
-  const Settled settled = (*equilibrium)->find(target, c.springs, 1e-3);
+  (*equilibrium)->find(c.with(volume), c.springs, 1e-3);
   const int before = c.cost.factorisations;
-  const auto derivatives = (*equilibrium)->differentiate(target, settled, c.springs);
+  const auto derivatives = (*equilibrium)->differentiate_by_volume();
   ASSERT_EQ(derivatives.size(), 1u);
-  EXPECT_LE(c.cost.factorisations, before + 2);
+  ASSERT_TRUE(derivatives[0].has_value());
+  EXPECT_EQ(c.cost.factorisations, before);
   const double step = 0.01 * volume;
-  const Eigen::Matrix3Xd more = (*equilibrium)->find(c.with(volume + step), c.springs, 1e-9).positions;
-  const Eigen::Matrix3Xd less = (*equilibrium)->find(c.with(volume - step), c.springs, 1e-9).positions;
-  const Eigen::Matrix3Xd expected = (more - less) / (2.0 * step);
-  EXPECT_LT((derivatives[0] - expected).colwise().norm().maxCoeff(), 1e-2 * expected.colwise().norm().maxCoeff());
+  const Settled more = (*equilibrium)->find(c.with(volume + step), c.springs, 1e-9);
+  const Settled less = (*equilibrium)->find(c.with(volume - step), c.springs, 1e-9);
+  const Eigen::Matrix3Xd expected = (more.positions - less.positions) / (2.0 * step);
+  EXPECT_LT((derivatives[0]->displacement - expected).colwise().norm().maxCoeff(),
+            1e-2 * expected.colwise().norm().maxCoeff());
+  const double head = (more.pool_head[0] - less.pool_head[0]) / (2.0 * step);
+  EXPECT_NEAR(derivatives[0]->pool_head[0], head, 1e-2 * head);
+}
+
+/// The same by the stiffness of a layer; afterwards the tissue has the stiffness that it had.
+TEST(Equilibrium, DerivativesByModulusAreThoseOfItsShapes) {
+  SmallEquilibrium c;
+  auto equilibrium = Equilibrium::create(*c.model, c.films, c.cells, *c.system, c.geometry, c.load, c.cost);
+  ASSERT_TRUE(equilibrium.ok());
+  const PoolTarget target = c.with(0.3 * kMillilitre);
+  const Settled before = (*equilibrium)->find(target, c.springs, 1e-3);
+  const auto derivatives = (*equilibrium)->differentiate_by_modulus();
+  EXPECT_EQ((*equilibrium)->find(target, c.springs, 1e-3).positions, before.positions);
+  ASSERT_EQ(derivatives.size(), static_cast<size_t>(c.system->n_layers()));
+  for (int layer = 0; layer < c.system->n_layers(); ++layer) {
+    SCOPED_TRACE(layer);
+    const auto& derivative = derivatives[static_cast<size_t>(layer)];
+    ASSERT_TRUE(derivative.has_value());
+    const double share = 0.02;
+    const auto find_scaled = [&](double change) {
+      Eigen::VectorXd factors = Eigen::VectorXd::Ones(c.system->n_layers());
+      factors[layer] = std::exp(change);
+      EXPECT_TRUE(c.system->scale_moduli(factors).ok());
+      return (*equilibrium)->find(target, c.springs, 1e-9);
+    };
+    const Settled stiffer = find_scaled(share), softer = find_scaled(-share);
+    const Eigen::Matrix3Xd expected = (stiffer.positions - softer.positions) / (2.0 * share);
+    EXPECT_LT((derivative->displacement - expected).colwise().norm().maxCoeff(),
+              1e-2 * expected.colwise().norm().maxCoeff());
+    const double head = (stiffer.pool_head[0] - softer.pool_head[0]) / (2.0 * share);
+    EXPECT_NEAR(derivative->pool_head[0], head, 1e-2 * std::abs(head));
+    EXPECT_TRUE(c.system->scale_moduli(Eigen::VectorXd::Ones(c.system->n_layers())).ok());
+  }
+}
+
+/// A shape that follows another is the one found from rest, within the tolerance, for less.
+TEST(Equilibrium, FollowsAtAFractionOfTheCost) {
+  SmallEquilibrium c;
+  auto equilibrium = Equilibrium::create(*c.model, c.films, c.cells, *c.system, c.geometry, c.load, c.cost);
+  ASSERT_TRUE(equilibrium.ok());
+  (*equilibrium)->follow(c.with(0.3 * kMillilitre), c.springs, 1e-3);
+  EXPECT_TRUE((*equilibrium)->is_from_rest()) << "there was none to follow";
+  const Settled followed = (*equilibrium)->follow(c.with(0.32 * kMillilitre), c.springs, 1e-3);
+  EXPECT_FALSE((*equilibrium)->is_from_rest());
+  EXPECT_EQ(followed.cost.factors, 0);
+  EXPECT_LE(followed.cost.iterations, 3);
+  const PoolTarget target = c.with(0.32 * kMillilitre);
+  EXPECT_NEAR(followed.pool_volume[0], target.volume[0], 1e-12 * target.volume[0]);
+  const Settled exact = (*equilibrium)->find(target, c.springs, 1e-9);
+  EXPECT_TRUE((*equilibrium)->is_from_rest());
+  const double lift = (exact.positions - c.system->rest_positions()).colwise().norm().maxCoeff();
+  EXPECT_LT((exact.positions - followed.positions).colwise().norm().maxCoeff(), 2e-3 * lift);
 }
 
 }  // namespace

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "core/equilibrium/held_response.h"
+
+namespace lipofill::equilibrium {
+
+/// A small change of what a shape in balance is asked to hold, a unit of a parameter.
+struct LoadChange {
+  Eigen::VectorXd force;   ///< more of r, a value a degree of freedom [N]
+  Eigen::VectorXd volume;  ///< more in each row [m3]; without meaning for a pool at the suction limit
+};
+
+/// What the shape does then.
+struct Tangent {
+  Eigen::VectorXd displacement;  ///< a value a degree of freedom [m]
+  Eigen::VectorXd pressure;      ///< of each row [Pa]
+};
+
+/// How a shape in balance answers to a small change, to first order, its active sets as they are:
+///
+///     J (dx, dp) = (force, volume),   J = -d(r, gap)/d(x, p) at the shape
+///
+/// J has terms that the held factor leaves out: the answer is corrected by that factor until a
+/// correction is less than 0.2 % of it, with J (dx, dp) from a difference of forces and gaps along
+/// (dx, dp). Nothing where it does not converge. The balance is at the shape before and after.
+/// Checked by tests/unit/equilibrium/tangent_test.cc.
+std::optional<Tangent> find_tangent(StaticBalance& balance, HeldResponse& response, const Pools& pools,
+                                    const Shape& shape, const Eigen::VectorXd& springs, const LoadChange& change);
+
+}  // namespace lipofill::equilibrium

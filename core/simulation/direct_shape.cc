@@ -68,17 +68,32 @@ absl::StatusOr<std::unique_ptr<DirectShape>> DirectShape::create(const model::Fa
   return std::unique_ptr<DirectShape>(new DirectShape(stepper.cells(), *std::move(equilibrium), -limit));
 }
 
-equilibrium::Settled DirectShape::find(const SimulationState& rest, const std::vector<Eigen::VectorXd>& injected,
+equilibrium::Settled DirectShape::find(const SimulationState& from, const std::vector<Eigen::VectorXd>& injected,
                                        SimulationState& next) {
-  equilibrium::PoolTarget target;
-  target.volume = equilibrium_->pools().sum(volume_with(cells_, rest, injected));
-  target.lowest_head = lowest_head_;
-  equilibrium::Settled settled = equilibrium_->find(target, rest.spring_is_intact, kForceTolerance);
-  next = rest;
+  equilibrium::Settled settled =
+      equilibrium_->find(target_with(from, injected), from.spring_is_intact, kForceTolerance);
+  fill(from, settled, next);
+  return settled;
+}
+
+equilibrium::Settled DirectShape::follow(const SimulationState& from, const std::vector<Eigen::VectorXd>& injected,
+                                         SimulationState& next) {
+  equilibrium::Settled settled =
+      equilibrium_->follow(target_with(from, injected), from.spring_is_intact, kForceTolerance);
+  fill(from, settled, next);
+  return settled;
+}
+
+equilibrium::PoolTarget DirectShape::target_with(const SimulationState& from,
+                                                 const std::vector<Eigen::VectorXd>& injected) const {
+  return {equilibrium_->pools().sum(volume_with(cells_, from, injected)), lowest_head_};
+}
+
+void DirectShape::fill(const SimulationState& from, const equilibrium::Settled& settled, SimulationState& next) const {
+  next = from;
   next.positions = settled.positions;
   next.velocities.setZero();
   fill_films(settled, next);
-  return settled;
 }
 
 /// Fat at rest fills its gap; at the suction limit each cell has its share of it, the rest is void.

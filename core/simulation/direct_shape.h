@@ -34,16 +34,25 @@ class DirectShape {
                                                              const plan::SimulationSpec& spec,
                                                              step::CoupledStep& stepper);
 
-  /// Finds the shape with what is injected [m3] (a film, its cells) and writes it into `next`:
-  /// positions, and volumes and pressures of the films, nothing moves. Where not all of it goes in,
-  /// `next` has as much as does.
-  equilibrium::Settled find(const mechanics::SimulationState& rest, const std::vector<Eigen::VectorXd>& injected,
+  /// Finds the shape with what a state at rest holds and what is injected beside it [m3] (a film,
+  /// its cells), and writes it into `next`: positions, and volumes and pressures of the films;
+  /// nothing moves. Where not all of it goes in, `next` has as much as does.
+  equilibrium::Settled find(const mechanics::SimulationState& from, const std::vector<Eigen::VectorXd>& injected,
                             mechanics::SimulationState& next);
+  /// The same from the last shape (Equilibrium::follow).
+  equilibrium::Settled follow(const mechanics::SimulationState& from, const std::vector<Eigen::VectorXd>& injected,
+                              mechanics::SimulationState& next);
+  /// What finds them.
+  equilibrium::Equilibrium& equilibrium() { return *equilibrium_; }
 
  private:
   DirectShape(const mechanics::FilmCells& cells, std::unique_ptr<equilibrium::Equilibrium> equilibrium,
               double lowest_head)
       : cells_(cells), equilibrium_(std::move(equilibrium)), lowest_head_(lowest_head) {}
+  equilibrium::PoolTarget target_with(const mechanics::SimulationState& from,
+                                      const std::vector<Eigen::VectorXd>& injected) const;
+  void fill(const mechanics::SimulationState& from, const equilibrium::Settled& settled,
+            mechanics::SimulationState& next) const;
   void fill_films(const equilibrium::Settled& settled, mechanics::SimulationState& next) const;
 
   const mechanics::FilmCells& cells_;

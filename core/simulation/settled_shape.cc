@@ -1,4 +1,4 @@
-// The settled shape in place of the first step.
+// Settled shapes in place of steps.
 
 #include <algorithm>
 #include <limits>
@@ -23,22 +23,25 @@ void Simulation::Impl::decide_way() {
   report.way = settles_directly ? "directly" : absl::StrCat("in steps: ", hindrance->text());
 }
 
+absl::Status Simulation::Impl::make_direct() {
+  if (direct != nullptr) return absl::OkStatus();
+  auto created = DirectShape::create(*model, films, spec, *stepper);
+  if (created.ok()) direct = *std::move(created);
+  return created.status();
+}
+
 /// One step to the settled shape: all is injected, and the time is that when the last injection
 /// ends. False where there is not even the beginning of a path to it; the plan is then stepped.
 bool Simulation::Impl::settle() {
-  if (direct == nullptr) {
-    auto created = DirectShape::create(*model, films, spec, *stepper);
-    if (!created.ok()) {
-      fail(std::string(created.status().message()));
-      return true;
-    }
-    direct = *std::move(created);
+  if (const absl::Status made = make_direct(); !made.ok()) {
+    fail(std::string(made.message()));
+    return true;
   }
-  const double end = std::max(schedule.end(), spec.step);
+  const double end = std::max(schedule.end(), state.time + spec.step);
   const auto enough = [](int, int) { return std::numeric_limits<double>::max(); };
   schedule.get_delivered(delivered_before);
   const double total = schedule.delivered();
-  schedule.deliver(films, enough, 0.0, end, injected);
+  schedule.deliver(films, enough, state.time, end - state.time, injected);
   mechanics::SimulationState next;
   const equilibrium::Settled settled = direct->find(state, injected, next);
   if (settled.share == 0.0) {
@@ -46,8 +49,15 @@ bool Simulation::Impl::settle() {
     report.way = absl::StrCat("in steps: no equilibrium was found, ", settled.reason);
     return false;
   }
-  next.step = 1;
-  next.time = next.last_step = end;
+  become(settled, std::move(next), end);
+  return true;
+}
+
+/// Takes up a shape, as the one of `time`.
+void Simulation::Impl::become(const equilibrium::Settled& settled, mechanics::SimulationState next, double time) {
+  next.step = state.step + 1;
+  next.time = time;
+  next.last_step = time - state.time;
   attempt = stepper->describe(next);
   attempt.newton_iterations = settled.cost.iterations;
   if (!settled.is_whole()) {
@@ -55,7 +65,7 @@ bool Simulation::Impl::settle() {
     for (double& delivered : delivered_before) delivered *= settled.share;
     schedule.restore_delivered(delivered_before, settled.share * schedule.delivered());
   }
-  fill_report(attempt, end);
+  fill_report(attempt, next.last_step);
   report.settling_error = 0.0;
   std::swap(state, attempt.state);
   if (settled.is_whole()) {
@@ -64,7 +74,6 @@ bool Simulation::Impl::settle() {
   } else {
     end_path(settled);
   }
-  return true;
 }
 
 void Simulation::Impl::end_path(const equilibrium::Settled& settled) {

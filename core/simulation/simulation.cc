@@ -78,8 +78,9 @@ void Simulation::advance_step() {
 void Simulation::Impl::advance() {
   stepper->reset_cost();
   try {
-    if (state.step == 0) decide_way();  // injections may have come since
-    if (state.step == 0 && settles_directly && settle()) return;
+    if (is_direct) decide_way();  // injections may have come since
+    if (is_direct && settles_directly && settle()) return;
+    is_direct = false;
     try_with_smaller_steps();
     if (!attempt.accepted) return fail(attempt.reason);
     accept(attempt.state.time - state.time);
@@ -216,8 +217,9 @@ const std::shared_ptr<const model::FaceModel>& Simulation::shared_model() const 
 }
 
 absl::StatusOr<ResolvedInjection> Simulation::resolve(const plan::InjectionSpec& injection) const {
-  if (impl_->phase != Phase::kRunning) {
-    return absl::FailedPreconditionError("the simulation has ended and takes no more injections");
+  if (impl_->phase != Phase::kRunning && impl_->phase != Phase::kSettled) {
+    return absl::FailedPreconditionError(
+        "the simulation has ended before it came to rest, and takes no more injections");
   }
   if (const absl::Status room = plan::check_room_for_injection(impl_->spec); !room.ok()) return room;
   ResolvedInjection resolved{injection, {}};
@@ -234,6 +236,8 @@ void Simulation::inject_resolved(const ResolvedInjection& injection) {
   impl_->spec.injections.push_back(injection.spec);
   impl_->state.next_step = std::min(impl_->state.next_step, impl_->spec.step);
   impl_->state.slow_steps = 0;
+  if (impl_->phase == Phase::kSettled) impl_->reason.clear();
+  impl_->phase = Phase::kRunning;
 }
 
 absl::Status Simulation::inject(const plan::InjectionSpec& injection) {

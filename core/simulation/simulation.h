@@ -114,9 +114,10 @@ class Simulation {
   ~Simulation();
 
   /// Takes one time step; for a plan whose goal is its settled shape, and that has one whatever the
-  /// way there (core/equilibrium/scope.h), the one step to it. Never throws. On failure phase() is
-  /// kFailed with reason(), and the state stays that before the step, or is the last shape on the
-  /// path to the settled one. Does nothing unless phase() is kRunning.
+  /// way there (core/equilibrium/scope.h), the one step to it, also when injections came after it.
+  /// Never throws. On failure phase() is kFailed with reason(), and the state stays that before the
+  /// step, or is the last shape on the path to the settled one. Does nothing unless phase() is
+  /// kRunning.
   void advance_step();
 
   Phase phase() const;
@@ -132,8 +133,8 @@ class Simulation {
   std::vector<LayerReport> layer_reports() const;
 
   /// Adds an injection to the plan; without a start it begins now, or after the last one still due.
-  /// Field violations named as in lipofill.v1.Injection. A settled or finished simulation does not
-  /// take one: FAILED_PRECONDITION.
+  /// Field violations named as in lipofill.v1.Injection. A settled simulation goes on with it: its
+  /// phase is kRunning again. One that ended in another way does not take it: FAILED_PRECONDITION.
   absl::Status inject(const plan::InjectionSpec& injection);
   /// The injection that inject() would add, or why it would refuse it. Whoever must note an
   /// injection before it takes effect notes this one, and then adds it with inject_resolved(),
@@ -183,6 +184,7 @@ class Simulation {
   absl::Status restore(std::string_view snapshot);
 
  private:
+  friend class TrialShape;
   Simulation();
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -26,7 +26,8 @@ struct Simulation::Impl {
   std::vector<plan::ProbePlace> probes;
   plan::InjectionSchedule schedule;
   std::unique_ptr<step::CoupledStep> stepper;
-  bool settles_directly = false;        ///< the settled shape is found in place of the first step
+  bool settles_directly = false;        ///< the settled shape is found in place of steps
+  bool is_direct = true;                ///< all steps so far were to settled shapes
   std::unique_ptr<DirectShape> direct;  ///< made when it is
   mechanics::SimulationState state;
   Phase phase = Phase::kRunning;
@@ -44,6 +45,8 @@ struct Simulation::Impl {
   void advance();
   void decide_way();
   bool settle();
+  absl::Status make_direct();
+  void become(const equilibrium::Settled& settled, mechanics::SimulationState next, double time);
   void end_path(const equilibrium::Settled& settled);
   void try_with_smaller_steps();
   double first_step_to_try(double smallest) const;

@@ -9,7 +9,7 @@
 namespace lipofill::simulation {
 namespace {
 
-constexpr char kMagic[] = "lipofill-state-6";
+constexpr char kMagic[] = "lipofill-state-7";
 
 /// Visits every number of the mutable state in a fixed order, so that writing, reading and hashing
 /// cannot disagree.
@@ -90,11 +90,6 @@ bool is_possible(const mechanics::SimulationState& state, int phase) {
   return is_phase && is_counted && is_timed;
 }
 
-/// A shape found directly is there after one step.
-bool state_was_stepped(const mechanics::SimulationState& state, Phase phase) {
-  return state.step > 1 || (state.step == 1 && phase == Phase::kRunning);
-}
-
 struct HashVisitor {
   Hasher hasher;
   template <typename T>
@@ -122,6 +117,8 @@ std::string Simulation::snapshot() const {
   visit_state(state, writer);
   int phase = static_cast<int>(impl_->phase);
   writer.number(phase);
+  int is_direct = impl_->is_direct;
+  writer.number(is_direct);
   std::vector<double> delivered = impl_->schedule.delivered_each();
   writer.array(delivered.data(), static_cast<Eigen::Index>(delivered.size()));
   double total = impl_->schedule.delivered();
@@ -138,9 +135,11 @@ absl::Status Simulation::restore(std::string_view snapshot) {
   mechanics::SimulationState state = impl.state;
   double total = 0.0, initial = 0.0;
   int phase = 0;
+  int is_direct = 0;
   std::vector<double> delivered = impl.schedule.delivered_each();
   visit_state(state, reader);
   reader.number(phase);
+  reader.number(is_direct);
   reader.array(delivered.data(), static_cast<Eigen::Index>(delivered.size()));
   reader.number(total);
   reader.number(initial);
@@ -148,13 +147,14 @@ absl::Status Simulation::restore(std::string_view snapshot) {
     return absl::DataLossError(
         "not a state of this simulation: its size or mark is another, or a number is not finite");
   }
-  if (!is_possible(state, phase)) return absl::DataLossError("a state that no simulation comes to");
+  if (!is_possible(state, phase) || (is_direct != 0 && is_direct != 1))
+    return absl::DataLossError("a state that no simulation comes to");
   impl.state = std::move(state);
   impl.phase = static_cast<Phase>(phase);
   impl.schedule.restore_delivered(delivered, total);
   impl.initial_volume = initial;
-  const bool was_stepped = state_was_stepped(impl.state, impl.phase);
-  if (was_stepped && impl.settles_directly) impl.report.way = "in steps: it was begun in them";
+  impl.is_direct = is_direct == 1;
+  if (!impl.is_direct && impl.settles_directly) impl.report.way = "in steps: it was begun in them";
   impl.fill_report(impl.stepper->describe(impl.state), impl.state.last_step);
   return absl::OkStatus();
 }

@@ -101,7 +101,69 @@ TEST(DirectShape, AnInjectionAddedBeforeItIsInIt) {
   const auto planned = make_small_simulation(spec);
   run_to_its_end(*planned);
   EXPECT_EQ(added->state_hash(), planned->state_hash());
-  EXPECT_FALSE(added->inject({"all", 0.1e-6, 1e-6, std::nullopt, std::nullopt}).ok()) << "it has ended";
+}
+
+/// Life goes on after it has settled: the next shape is again one step, and the shape of a plan
+/// with all of it from the beginning but for the tolerance of forces; also from a snapshot.
+TEST(DirectShape, AnInjectionAddedAfterwardsLeadsToTheNextShape) {
+  const plan::InjectionSpec more{"all", 0.1e-6, 1e-6, std::nullopt, std::nullopt};
+  plan::SimulationSpec spec = make_settled_plan();
+  const auto added = make_small_simulation(spec);
+  run_to_its_end(*added);
+  const double settled_at = added->report().time;
+  const std::string settled = added->snapshot();
+  ASSERT_TRUE(added->inject(more).ok());
+  EXPECT_EQ(added->phase(), Phase::kRunning);
+  run_to_its_end(*added);
+  EXPECT_EQ(added->phase(), Phase::kSettled);
+  EXPECT_EQ(added->report().step, 2u);
+  EXPECT_GT(added->report().time, settled_at);
+  EXPECT_EQ(added->report().way, "directly");
+  EXPECT_NEAR(added->report().injected, 0.4e-6, 1e-20);
+  EXPECT_LT(added->report().film_volume_relative_error, 1e-12);
+
+  const auto restored = make_small_simulation(spec);
+  ASSERT_TRUE(restored->restore(settled).ok());
+  ASSERT_TRUE(restored->inject(more).ok());
+  run_to_its_end(*restored);
+  EXPECT_EQ(restored->state_hash(), added->state_hash());
+
+  spec.injections.push_back(more);
+  const auto planned = make_small_simulation(spec);
+  run_to_its_end(*planned);
+  const std::vector<float> one = skin_of(*added), other = skin_of(*planned);
+  ASSERT_EQ(one.size(), other.size());
+  for (size_t k = 0; k < one.size(); ++k) EXPECT_NEAR(one[k], other[k], 1e-6) << "both are found from rest";
+}
+
+/// Taking out what was put in leads back.
+TEST(DirectShape, WhatIsTakenOutAfterwardsLeadsBack) {
+  const auto simulation = make_small_simulation(make_settled_plan());
+  run_to_its_end(*simulation);
+  const std::vector<float> before = skin_of(*simulation);
+  for (const double volume : {0.1e-6, -0.1e-6}) {
+    ASSERT_TRUE(simulation->inject({"all", volume, 1e-6, std::nullopt, std::nullopt}).ok());
+    run_to_its_end(*simulation);
+  }
+  EXPECT_EQ(simulation->phase(), Phase::kSettled) << simulation->reason();
+  const std::vector<float> after = skin_of(*simulation);
+  for (size_t k = 0; k < before.size(); ++k) EXPECT_NEAR(before[k], after[k], 1e-6);
+}
+
+/// One that came to rest in steps goes on in steps.
+TEST(DirectShape, ASteppedRunThatHasSettledGoesOnInSteps) {
+  plan::SimulationSpec spec = make_settled_plan();
+  spec.goal = plan::TimeGoal::kTransient;
+  spec.settle_skin_speed = 0.5e-3;
+  const auto simulation = make_small_simulation(spec);
+  run_to_its_end(*simulation);
+  ASSERT_EQ(simulation->phase(), Phase::kSettled) << simulation->reason();
+  const uint64_t steps = simulation->report().step;
+  ASSERT_TRUE(simulation->inject({"all", 0.1e-6, 1e-6, std::nullopt, std::nullopt}).ok());
+  run_to_its_end(*simulation);
+  EXPECT_EQ(simulation->phase(), Phase::kSettled) << simulation->reason();
+  EXPECT_GT(simulation->report().step, steps + 5);
+  EXPECT_NEAR(simulation->report().injected, 0.4e-6, 1e-18);
 }
 
 TEST(DirectShape, EqualPlansGiveEqualBytesAlsoFromSnapshots) {

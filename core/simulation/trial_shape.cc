@@ -1,0 +1,161 @@
+#include "core/simulation/trial_shape.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "core/base/field_violations.h"
+#include "core/coupling/gap_volume.h"
+#include "core/simulation/simulation_impl.h"
+
+namespace lipofill::simulation {
+namespace {
+
+/// Fat that is added to a zone comes after the plan's own; how fast does not matter at rest [m3/s].
+constexpr double kRateOfAdded = 1e-6;
+/// Of the largest displacement, over which the volume that a small motion sweeps is measured [m].
+constexpr double kSweep = 1e-6;
+
+absl::Status has_to_be_stepped(const std::string& why) {
+  return absl::FailedPreconditionError(
+      absl::StrCat("the settled shape of this plan cannot be found at once: ", why, "; run the plan to see its shape"));
+}
+
+void check_volumes(const TrialVolumes& volumes, size_t n_injections, FieldViolations& violations) {
+  std::set<size_t> seen;
+  for (size_t k = 0; k < volumes.injections.size(); ++k) {
+    const size_t injection = volumes.injections[k].injection;
+    const std::string field = absl::StrCat("injections[", k, "].index");
+    if (injection >= n_injections) {
+      violations.add(field, absl::StrCat("is ", injection, ", the plan has ", n_injections, " injections"));
+    } else if (!seen.insert(injection).second) {
+      violations.add(field, absl::StrCat("is ", injection, " again"));
+    }
+  }
+  std::set<std::string> zones;
+  for (size_t k = 0; k < volumes.added.size(); ++k) {
+    if (zones.insert(volumes.added[k].zone).second) continue;
+    violations.add(absl::StrCat("added[", k, "].zone"), absl::StrCat("is '", volumes.added[k].zone, "' again"));
+  }
+}
+
+}  // namespace
+
+TrialShape::TrialShape(std::unique_ptr<Simulation> simulation)
+    : simulation_(std::move(simulation)),
+      rest_(std::make_unique<mechanics::SimulationState>(simulation_->impl_->state)) {}
+TrialShape::~TrialShape() = default;
+
+absl::StatusOr<std::unique_ptr<TrialShape>> TrialShape::create(std::shared_ptr<const model::FaceModel> model,
+                                                               plan::SimulationSpec spec) {
+  spec.goal = plan::TimeGoal::kSettledShape;
+  auto simulation = Simulation::create(std::move(model), std::move(spec));
+  if (!simulation.ok()) return simulation.status();
+  Simulation::Impl& impl = *(*simulation)->impl_;
+  const auto hindrance = DirectShape::find_hindrance(*impl.model, impl.films, impl.spec, {}, impl.state, *impl.stepper);
+  if (hindrance) return has_to_be_stepped(hindrance->text());
+  if (const absl::Status made = impl.make_direct(); !made.ok()) return made;
+  return std::unique_ptr<TrialShape>(new TrialShape(*std::move(simulation)));
+}
+
+/// The plan's injections with other volumes, then what is added.
+absl::StatusOr<plan::InjectionSchedule> TrialShape::schedule_with(const TrialVolumes& volumes) const {
+  const Simulation::Impl& impl = *simulation_->impl_;
+  FieldViolations violations;
+  check_volumes(volumes, impl.spec.injections.size(), violations);
+  if (!violations.empty()) return violations.to_status();
+  std::vector<plan::InjectionSpec> injections = impl.spec.injections;
+  std::vector<std::string> fields;
+  for (size_t k = 0; k < injections.size(); ++k) fields.push_back(absl::StrCat("spec.injections[", k, "]"));
+  for (size_t k = 0; k < volumes.injections.size(); ++k) {
+    const TrialVolumes::Replaced& replaced = volumes.injections[k];
+    injections[replaced.injection].volume = replaced.volume;
+    fields[replaced.injection] = absl::StrCat("injections[", k, "]");
+  }
+  for (size_t k = 0; k < volumes.added.size(); ++k) {
+    plan::InjectionSpec added;
+    added.zone = volumes.added[k].zone;
+    added.volume = volumes.added[k].volume;
+    added.rate = kRateOfAdded;
+    injections.push_back(added);
+    fields.push_back(absl::StrCat("added[", k, "]"));
+  }
+  plan::InjectionSchedule schedule;
+  for (size_t k = 0; k < injections.size(); ++k) {
+    auto placed = schedule.place(*impl.model, impl.films, injections[k], 0.0);
+    violations.absorb(fields[k], placed.status());
+    if (placed.ok()) schedule.add(*std::move(placed));
+  }
+  if (!violations.empty()) return violations.to_status();
+  return schedule;
+}
+
+absl::Status TrialShape::find(const TrialVolumes& volumes, bool from_last) {
+  Simulation::Impl& impl = *simulation_->impl_;
+  auto schedule = schedule_with(volumes);
+  if (!schedule.ok()) return schedule.status();
+  const auto hindrance =
+      DirectShape::find_hindrance(*impl.model, impl.films, impl.spec, *schedule, *rest_, *impl.stepper);
+  if (hindrance) return has_to_be_stepped(hindrance->text());
+  impl.stepper->reset_cost();
+  const double end = std::max(schedule->end(), impl.spec.step);
+  const auto enough = [](int, int) { return std::numeric_limits<double>::max(); };
+  std::vector<Eigen::VectorXd> injected;
+  schedule->deliver(impl.films, enough, 0.0, end, injected);
+  mechanics::SimulationState next;
+  const equilibrium::Settled settled =
+      from_last ? impl.direct->follow(*rest_, injected, next) : impl.direct->find(*rest_, injected, next);
+  if (settled.share == 0.0) return absl::FailedPreconditionError("no shape at rest was found: " + settled.reason);
+  impl.schedule = *std::move(schedule);
+  impl.state = *rest_;
+  impl.become(settled, std::move(next), end);
+  impl.report.way = "directly";
+  impl.report.cost = impl.stepper->cost();
+  share_ = settled.share;
+  reason_ = settled.is_whole() ? "" : impl.reason;
+  is_from_rest_ = impl.direct->equilibrium().is_from_rest();
+  pools_.clear();
+  for (Eigen::Index pool = 0; pool < settled.pool_head.size(); ++pool) {
+    pools_.push_back({impl.direct->equilibrium().pools().names[static_cast<size_t>(pool)], settled.fat_volume[pool],
+                      settled.pool_head[pool]});
+  }
+  return absl::OkStatus();
+}
+
+std::vector<ShapeSensitivity> TrialShape::find_sensitivities() {
+  std::vector<ShapeSensitivity> all;
+  if (share_ < 1.0) return all;
+  Simulation::Impl& impl = *simulation_->impl_;
+  const geometry::LayeredGrid& grid = impl.model->geometry.grid;
+  const Eigen::Matrix3Xd skin = impl.skin_positions();
+  const double swept = coupling::compute_swept_volume(grid, grid.nodes, skin);
+  const auto add = [&](ShapeParameter parameter, const std::string& name,
+                       const std::optional<equilibrium::Sensitivity>& found) {
+    if (!found) return;
+    ShapeSensitivity sensitivity{parameter, name, Eigen::Matrix3Xd(3, skin.cols()), 0.0, {}};
+    for (Eigen::Index s = 0; s < skin.cols(); ++s) {
+      sensitivity.skin.col(s) = found->displacement.col(impl.stepper->tissue()->skin_nodes[static_cast<size_t>(s)]);
+    }
+    const double largest = sensitivity.skin.colwise().norm().maxCoeff();
+    if (largest > 0.0) {
+      const double h = kSweep / largest;
+      const double beside = coupling::compute_swept_volume(grid, grid.nodes, skin + h * sensitivity.skin);
+      sensitivity.skin_volume = (beside - swept) / h;
+    }
+    sensitivity.pool_pressure.assign(found->pool_head.begin(), found->pool_head.end());
+    all.push_back(std::move(sensitivity));
+  };
+  equilibrium::Equilibrium& equilibrium = impl.direct->equilibrium();
+  const auto by_volume = equilibrium.differentiate_by_volume();
+  for (size_t k = 0; k < by_volume.size(); ++k) add(ShapeParameter::kPoolVolume, pools_[k].zones, by_volume[k]);
+  const auto by_modulus = equilibrium.differentiate_by_modulus();
+  for (size_t k = 0; k < by_modulus.size(); ++k) {
+    add(ShapeParameter::kLayerModulus, impl.model->layers[k].name, by_modulus[k]);
+  }
+  return all;
+}
+
+}  // namespace lipofill::simulation

@@ -110,8 +110,10 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<
   self->server_ = builder.BuildAndStart();
   if (self->server_ == nullptr) return absl::InternalError("gRPC does not start; its own log says why");
   if (auto opened = self->open_door(); !opened.ok()) return opened;
-  self->sweeper_ =
-      std::make_unique<Periodic>("sweeper", std::chrono::seconds(1), [gate = &self->gate_] { gate->sweep(); });
+  self->sweeper_ = std::make_unique<Periodic>("sweeper", std::chrono::seconds(1), [gate = &self->gate_, &backend] {
+    gate->sweep();
+    backend.shapes.drop_idle();
+  });
   return self;
 }
 
@@ -174,6 +176,7 @@ bool GrpcServer::drain(Seconds delay, Seconds timeout) {
   backend_.sessions.suspend_all();
   spdlog::info("simulations are at rest");
   backend_.operations.stop();
+  backend_.shapes.close();
   const Seconds for_calls = std::min(kMaxForCalls, kShareForCalls * (timeout - delay));
   const std::future<void> calls_ended = end_calls(for_calls);
   backend_.builds.stop();

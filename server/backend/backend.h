@@ -14,6 +14,7 @@
 #include "server/sessions/model_cache.h"
 #include "server/sessions/operations.h"
 #include "server/sessions/session_manager.h"
+#include "server/sessions/shape_desk.h"
 #include "server/sessions/task_pool.h"
 #include "server/sessions/worker_pool.h"
 #include "server/store/checkpoint_files.h"
@@ -70,6 +71,7 @@ struct Backend {
   SessionManager sessions;
   ResultKeeper keeper;
   Courier courier;
+  ShapeDesk shapes{workers, sessions};
   /// These come last: their threads use the others.
   WorkerPool workers;
   TaskPool calls{"calls", 2, 256};

@@ -20,9 +20,11 @@ void add_simulations(Backend& backend, Metrics& metrics) {
                                          "injected| / max(injected, initial content)");
   auto& memory = metrics.add_gauge("lipofill_simulation_memory_bytes",
                                    "What the simulations that have not ended are reckoned to take");
+  auto& drags = metrics.add_gauge("lipofill_shape_drags", "Drags whose plans are in memory");
   auto& awaited = metrics.add_gauge("lipofill_simulations_awaited",
                                     "Simulations that could not be brought back yet since the daemon was started");
-  metrics.add_refresh([&backend, by_state, &volume_error, &memory, &awaited] {
+  metrics.add_refresh([&backend, by_state, &volume_error, &memory, &drags, &awaited] {
+    drags.Set(static_cast<double>(backend.shapes.n_drags()));
     awaited.Set(static_cast<double>(backend.awaited.size()));
     std::map<SimulationState, int> count;
     double largest = 0.0;

@@ -43,8 +43,8 @@ class LiveCalls {
   absl::Status begin_answer(uint64_t number, uint64_t bytes);
   void end_answer(uint64_t number);
 
-  /// Ends the calls whose answers wait too long, and those whose callers `check` refuses; gives back
-  /// the memory of answers that had no room since the last sweep.
+  /// Ends the calls whose answers wait too long, and those whose callers `check` refuses; gives
+  /// back the memory of answers that had no room since the last sweep.
   void sweep(const std::function<absl::Status(const Principal&)>& check, Clock::time_point now = Clock::now());
 
   uint64_t unread_bytes() const;

@@ -41,6 +41,7 @@ const std::map<std::string, MethodRule>& rules() {
       {"/lipofill.v1.SimulationService/DeleteSimulation", {Effect::kSteers, Role::kPlanner, false, false, true}},
       {"/lipofill.v1.SimulationService/EvaluateSimulation", {Effect::kNone, Role::kViewer}},
       {"/lipofill.v1.SimulationService/ExportTissueDeck", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.SimulationService/FindShape", {Effect::kBegins, Role::kViewer, false, true}},
       {"/lipofill.v1.SimulationService/GetCheckpoint", {Effect::kNone, Role::kViewer}},
       {"/lipofill.v1.SimulationService/GetSeries", {Effect::kNone, Role::kViewer}},
       {"/lipofill.v1.SimulationService/GetSimulation", {Effect::kNone, Role::kViewer}},

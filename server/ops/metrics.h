@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/ops/call_metrics.h"
+#include "server/ops/shape_metrics.h"
 #include "server/ops/simulation_metrics.h"
 #include "server/ops/step_metrics.h"
 #include "server/ops/viewer_metrics.h"
@@ -25,6 +26,7 @@ class Metrics {
   SimulationMetrics& simulations() { return simulations_; }
   ViewerMetrics& viewers() { return viewers_; }
   CallMetrics& calls() { return calls_; }
+  ShapeMetrics& shapes() { return shapes_; }
 
   /// A figure that is looked up at each scrape, by `refresh`.
   prometheus::Gauge& add_gauge(const std::string& name, const std::string& help, const prometheus::Labels& labels = {});
@@ -41,6 +43,7 @@ class Metrics {
   SimulationMetrics simulations_{registry_};
   ViewerMetrics viewers_{registry_};
   CallMetrics calls_{registry_};
+  ShapeMetrics shapes_{registry_};
 
   mutable std::mutex refresh_mutex_;
   std::vector<std::function<void()>> refreshes_;

@@ -20,9 +20,9 @@ class AuditAnchor {
  public:
   static std::string path_of(const std::string& log) { return log + ".anchor"; }
 
-  /// Opens the anchor of a log whose last whole line is `head`, or makes one. `key` may be nullptr. DATA_LOSS
-  /// when the log has fewer lines than the anchor, another last line, or the anchor is not signed
-  /// with the key; FAILED_PRECONDITION when it cannot be written.
+  /// Opens the anchor of a log whose last whole line is `head`, or makes one. `key` may be nullptr.
+  /// DATA_LOSS when the log has fewer lines than the anchor, another last line, or the anchor is
+  /// not signed with the key; FAILED_PRECONDITION when it cannot be written.
   static absl::StatusOr<std::unique_ptr<AuditAnchor>> open(const std::string& log, const AuditHead& head,
                                                            std::shared_ptr<const AnchorKey> key);
   ~AuditAnchor();

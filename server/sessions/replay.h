@@ -48,6 +48,11 @@ class Replay {
   /// Repeats what took effect after the step the simulation is at. DATA_LOSS, or what the
   /// simulation says, when something cannot be repeated.
   absl::Status repeat(simulation::Simulation& simulation);
+  /// True when an injection is to be repeated at this step or later: what came to rest there went
+  /// on.
+  bool goes_on_after(uint64_t step) const {
+    return under_way_ && !history_.injections.empty() && history_.injections.back().step >= step;
+  }
   /// True when nothing is left to repeat at this step or later, but for the stop.
   bool has_caught_up(uint64_t step) const { return history_.injections.empty() && step >= history_.until_step; }
   /// The number of the last command that is in a state after so many steps, before repeat() was

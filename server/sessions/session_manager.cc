@@ -39,6 +39,11 @@ absl::Status SessionManager::Place::claim(uint64_t bytes) {
   return absl::OkStatus();
 }
 
+void SessionManager::Place::unclaim() {
+  const std::lock_guard lock(manager_->mutex_);
+  manager_->bytes_taken_ -= std::exchange(bytes_, 0);
+}
+
 void SessionManager::take(const std::string& tenant) {
   ++n_taken_;
   ++n_taken_by_[tenant];

@@ -36,6 +36,8 @@ class SessionManager {
     /// Claims memory, once it is known how much the session will take. RESOURCE_EXHAUSTED naming
     /// the bound.
     absl::Status claim(uint64_t bytes);
+    /// Gives back what was claimed.
+    void unclaim();
 
    private:
     friend class SessionManager;

@@ -78,7 +78,8 @@ void SimulationRun::advance(bool previews) {
     if (previews) return live_.advance_preview();
     live_.advance_step();
     const simulation::Simulation& simulation = *live_.simulation();
-    if (simulation.phase() != Phase::kRunning) finish(state_of(simulation.phase()), simulation.reason());
+    const bool goes_on = simulation.phase() == Phase::kSettled && replay_.goes_on_after(simulation.report().step);
+    if (simulation.phase() != Phase::kRunning && !goes_on) finish(state_of(simulation.phase()), simulation.reason());
   } catch (const std::exception& error) {
     const uint64_t step = live_.figures().latest().report.step;
     finish(SimulationState::kFailed, absl::StrCat("step ", step + 1, ": ", error.what()));

@@ -26,6 +26,15 @@ void WorkerPool::schedule(std::shared_ptr<Task> task, const std::string& group) 
   changed_.notify_one();
 }
 
+void WorkerPool::schedule_at_once(std::shared_ptr<Task> task, const std::string& group) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) return;
+    admit(std::move(task), group, Clock::now());
+  }
+  changed_.notify_one();
+}
+
 size_t WorkerPool::queue_position(const Task& task) const {
   const std::lock_guard lock(mutex_);
   return waiting_.position([&](const auto& waiting) { return waiting.get() == &task; });
@@ -82,12 +91,17 @@ void WorkerPool::make_ready(Active active, Clock::time_point now) {
 }
 
 void WorkerPool::admit_waiting(Clock::time_point now) {
-  for (; n_active_ < max_active_ && !waiting_.empty(); ++n_active_) {
-    auto [task, name] = waiting_.admit();
-    const auto group = groups_.try_emplace(name).first;
-    ++group->second.n_tasks;
-    make_ready({std::move(task), group, group->second.least_used}, now);
+  while (n_active_ < max_active_ && !waiting_.empty()) {
+    auto [task, group] = waiting_.admit();
+    admit(std::move(task), group, now);
   }
+}
+
+void WorkerPool::admit(std::shared_ptr<Task> task, const std::string& name, Clock::time_point now) {
+  const auto group = groups_.try_emplace(name).first;
+  ++group->second.n_tasks;
+  ++n_active_;
+  make_ready({std::move(task), group, group->second.least_used}, now);
 }
 
 /// Time that a task let pass is not owed to it.

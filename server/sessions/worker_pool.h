@@ -45,6 +45,9 @@ class WorkerPool {
 
   /// Schedules a task. The caller makes sure that the pool does not have it already.
   void schedule(std::shared_ptr<Task> task, const std::string& group = "");
+  /// The same for a task whose turns are few and short, and that somebody waits for: it does not
+  /// wait in the queue, and shares the threads beside the `max_active`.
+  void schedule_at_once(std::shared_ptr<Task> task, const std::string& group = "");
   /// Place in the queue, as things stand: 1 is the next; 0: it does not wait in it.
   size_t queue_position(const Task& task) const;
   /// Takes a task out of the queue; false when it does not wait in it.
@@ -87,6 +90,7 @@ class WorkerPool {
 
   void work(int index);
   void make_ready(Active active, Clock::time_point now);
+  void admit(std::shared_ptr<Task> task, const std::string& group, Clock::time_point now);
   void admit_waiting(Clock::time_point now);
   void move_due_tasks(Clock::time_point now);
   bool any_ready() const;

@@ -8,6 +8,7 @@
 #include "server/backend/checkpoint_loading.h"
 #include "server/backend/parking.h"
 #include "server/backend/simulation_creation.h"
+#include "server/entry/listing.h"
 #include "server/sessions/identifiers.h"
 #include "server/store/record_names.h"
 #include "server/wire/names.h"
@@ -192,6 +193,39 @@ absl::StatusOr<v1::Simulation> restore_simulation(Backend& backend, const Princi
   const auto target = find_target(backend, caller, request);
   if (!target.ok()) return target.status();
   return request.as_new() ? begin_from(backend, *target, request) : take_back(backend, *target);
+}
+
+absl::Status get_checkpoint(Backend& backend, const v1::GetCheckpointRequest& request, v1::Checkpoint& response) {
+  const auto parts = parse_checkpoint_name(request.name(), "name");
+  if (!parts.ok()) return parts.status();
+  const auto record = backend.store.get_checkpoint(parts->simulation, parts->id);
+  if (record.ok()) response = to_checkpoint(*record);
+  return record.status();
+}
+
+absl::Status list_checkpoints(Backend& backend, const v1::ListCheckpointsRequest& request,
+                              v1::ListCheckpointsResponse& response) {
+  const auto id = parse_simulation_name(request.parent(), "parent");
+  if (!id.ok()) return id.status();
+  const std::string collection = request.parent() + "/checkpoints";
+  const auto page = parse_page(collection, request.page_size(), request.page_token());
+  if (!page.ok()) return page.status();
+  const auto records = backend.store.list_checkpoints(*id, one_more(*page));
+  if (!records.ok()) return records.status();
+  response.set_next_page_token(fill_page(collection, *page, *records, [&](const CheckpointRecord& record) {
+    if (record.is_damaged) return add_unreachable(checkpoint_name(record.simulation, record.id), response);
+    *response.add_checkpoints() = to_checkpoint(record);
+  }));
+  return absl::OkStatus();
+}
+
+absl::Status delete_checkpoint(Backend& backend, const v1::DeleteCheckpointRequest& request) {
+  const auto parts = parse_checkpoint_name(request.name(), "name");
+  if (!parts.ok()) return parts.status();
+  const absl::Status done =
+      backend.reserve.spend([&] { return backend.store.delete_checkpoint(parts->simulation, parts->id); });
+  if (done.ok()) backend.temporary_files.remove_deleted();
+  return done;
 }
 
 }  // namespace lipofill::server

@@ -18,4 +18,10 @@ absl::StatusOr<v1::Checkpoint> create_checkpoint(Backend& backend, const Princip
 absl::StatusOr<v1::Simulation> restore_simulation(Backend& backend, const Principal& caller,
                                                   const v1::RestoreSimulationRequest& request);
 
+absl::Status get_checkpoint(Backend& backend, const v1::GetCheckpointRequest& request, v1::Checkpoint& response);
+/// A page of those of a simulation.
+absl::Status list_checkpoints(Backend& backend, const v1::ListCheckpointsRequest& request,
+                              v1::ListCheckpointsResponse& response);
+absl::Status delete_checkpoint(Backend& backend, const v1::DeleteCheckpointRequest& request);
+
 }  // namespace lipofill::server

@@ -11,14 +11,13 @@
 #include "server/entry/listing.h"
 #include "server/entry/unary.h"
 #include "server/simulations/checkpoint_calls.h"
+#include "server/simulations/injection_calls.h"
+#include "server/simulations/shape_stream.h"
 #include "server/simulations/tissue_deck.h"
 #include "server/store/record_names.h"
-#include "server/wire/etag.h"
 #include "server/wire/field_mask.h"
 #include "server/wire/names.h"
 #include "server/wire/request_key.h"
-#include "server/wire/simulation_conversion.h"
-#include "server/wire/violation_prefix.h"
 
 namespace lipofill::server {
 namespace {
@@ -38,34 +37,6 @@ Session::Reply reply_to(Backend& backend, const std::string& id, Reactor* reacto
     });
     reactor->Finish(to_grpc_status(done));
   };
-}
-
-/// Puts the violations of an injection below "injection"; an etag that does not match is not one of
-/// its fields.
-absl::Status name_injection(const absl::Status& status) {
-  return absl::IsAborted(status) ? status : with_prefix("injection", status);
-}
-
-absl::StatusOr<InjectionOrder> read_injection(Backend& backend, const std::string& id,
-                                              const v1::InjectRequest& request) {
-  const auto injection = to_injection_spec(request.injection());
-  if (!injection.ok()) return name_injection(injection.status());
-  const auto check = [&backend, id, etag = request.etag()]() -> absl::Status {
-    if (etag.empty()) return absl::OkStatus();
-    const auto record = backend.store.get_simulation(id);
-    return record.ok() ? check_etag(etag, make_etag(*record), "etag") : record.status();
-  };
-  return InjectionOrder{*injection, request.injection().SerializeAsString(), check};
-}
-
-void foresee_injection(Session& session, const InjectionOrder& order, const v1::Injection& injection,
-                       const std::shared_ptr<std::optional<v1::Injection>>& foreseen, const Session::Reply& reply) {
-  session.foresee(order, [&session, injection, foreseen, reply](const absl::StatusOr<plan::InjectionSpec>& spec) {
-    if (!spec.ok()) return reply(name_injection(spec.status()));
-    *foreseen = injection;
-    (*foreseen)->set_start_s(spec->start.value_or(0.0));
-    reply(session.cached_view());
-  });
 }
 
 /// Answers a command when there is no session: the simulation has ended, perhaps by an equal
@@ -95,7 +66,7 @@ void wake_and_act(Backend& backend, const std::string& id, const RequestKey& key
 
 template <typename Request>
 Reactor* SimulationService::command(Context* context, const Request* request, v1::Simulation* response,
-                                    const char* what, const Act& act, const Amend& amend) {
+                                    const char* what, const Act& act, const Amend& amend, const Continue& go_on) {
   Reactor* reactor = context->DefaultReactor();
   bool answered = false;
   const LogScope scope(call_of(context).log_fields());
@@ -105,18 +76,40 @@ Reactor* SimulationService::command(Context* context, const Request* request, v1
     if (!id.ok()) return id.status();
     if (const absl::Status valid = check_request_id(request->request_id()); !valid.ok()) return valid;
     const RequestKey key = make_request_key(call_of(context).principal, what, request->request_id(), *request);
+    const Session::Reply reply = reply_to(backend_, *id, reactor, response, amend);
+    // Whether a simulation has settled may be known only once the command's turn has come.
+    const auto continue_later = [this, context, id = *id, key, reactor, response, amend, go_on] {
+      return backend_.calls.run([this, context, id, key, reactor, response, amend, go_on] {
+        const Unwanted unwanted = caller_has_left(context);
+        reactor->Finish(to_grpc_status(guarded_if_wanted(unwanted, [&]() -> absl::Status {
+          if (absl::Status gone_on = go_on(id, key, unwanted); !gone_on.ok()) return gone_on;
+          auto shown = show_simulation(backend_, id);
+          if (!shown.ok()) return shown.status();
+          *response = *std::move(shown);
+          if (amend != nullptr) amend(*response);
+          return absl::OkStatus();
+        })));
+      });
+    };
     if (const auto session = backend_.sessions.hold(*id); session != nullptr) {
       answered = true;
-      act(*session, key, reply_to(backend_, *id, reactor, response, amend));
+      act(*session, key, [this, id = *id, go_on, continue_later, reply](const absl::StatusOr<SessionView>& view) {
+        const bool settled = go_on != nullptr && absl::IsFailedPrecondition(view.status()) && has_settled(backend_, id);
+        if (!settled) return reply(view);
+        if (!continue_later()) reply(too_many_calls(backend_));
+      });
       return absl::OkStatus();
     }
     const auto record = backend_.store.get_simulation(*id);
     if (!record.ok()) return record.status();
+    if (go_on != nullptr && record->state == SimulationState::kSettled) {
+      answered = continue_later();
+      return too_many_calls(backend_);
+    }
     if (!is_parked(*record)) return answer_without_session(backend_, *record, what, key, *response);
-    answered = backend_.calls.run(
-        [this, context, id = *id, key, act, reply = reply_to(backend_, *id, reactor, response, amend)] {
-          wake_and_act(backend_, id, key, act, caller_has_left(context), reply);
-        });
+    answered = backend_.calls.run([this, context, id = *id, key, act, reply] {
+      wake_and_act(backend_, id, key, act, caller_has_left(context), reply);
+    });
     return too_many_calls(backend_);
   });
   if (!answered) reactor->Finish(to_grpc_status(done));
@@ -240,9 +233,13 @@ Reactor* SimulationService::Inject(Context* context, const v1::InjectRequest* re
       reply(std::move(view));
     });
   };
-  return command(context, request, response, "inject", act, [foreseen](v1::Simulation& simulation) {
+  const auto amend = [foreseen](v1::Simulation& simulation) {
     if (foreseen->has_value()) *simulation.mutable_spec()->add_injections() = **foreseen;
-  });
+  };
+  const auto go_on = [this, request, foreseen](const std::string& id, const RequestKey& key, const Unwanted& unwanted) {
+    return continue_or_foresee(backend_, id, *request, key, unwanted, *foreseen);
+  };
+  return command(context, request, response, "inject", act, amend, go_on);
 }
 
 Reactor* SimulationService::CreateCheckpoint(Context* context, const v1::CreateCheckpointRequest* request,
@@ -256,44 +253,17 @@ Reactor* SimulationService::CreateCheckpoint(Context* context, const v1::CreateC
 
 Reactor* SimulationService::GetCheckpoint(Context* context, const v1::GetCheckpointRequest* request,
                                           v1::Checkpoint* response) {
-  return answer(context, request, [&]() -> absl::Status {
-    const auto parts = parse_checkpoint_name(request->name(), "name");
-    if (!parts.ok()) return parts.status();
-    const auto record = backend_.store.get_checkpoint(parts->simulation, parts->id);
-    if (record.ok()) *response = to_checkpoint(*record);
-    return record.status();
-  });
+  return answer(context, request, [&] { return get_checkpoint(backend_, *request, *response); });
 }
 
 Reactor* SimulationService::ListCheckpoints(Context* context, const v1::ListCheckpointsRequest* request,
                                             v1::ListCheckpointsResponse* response) {
-  return answer(context, request, [&]() -> absl::Status {
-    const auto id = parse_simulation_name(request->parent(), "parent");
-    if (!id.ok()) return id.status();
-    const std::string collection = request->parent() + "/checkpoints";
-    const auto page = parse_page(collection, request->page_size(), request->page_token());
-    if (!page.ok()) return page.status();
-    const auto records = backend_.store.list_checkpoints(*id, one_more(*page));
-    if (!records.ok()) return records.status();
-    response->set_next_page_token(fill_page(collection, *page, *records, [&](const CheckpointRecord& record) {
-      if (record.is_damaged) return add_unreachable(checkpoint_name(record.simulation, record.id), *response);
-      *response->add_checkpoints() = to_checkpoint(record);
-    }));
-    return absl::OkStatus();
-  });
+  return answer(context, request, [&] { return list_checkpoints(backend_, *request, *response); });
 }
 
 Reactor* SimulationService::DeleteCheckpoint(Context* context, const v1::DeleteCheckpointRequest* request,
                                              google::protobuf::Empty*) {
-  return answer(context, request, [&]() -> absl::Status {
-    const auto parts = parse_checkpoint_name(request->name(), "name");
-    if (!parts.ok()) return parts.status();
-    const absl::Status done =
-        backend_.reserve.spend([&] { return backend_.store.delete_checkpoint(parts->simulation, parts->id); });
-    if (!done.ok()) return done;
-    backend_.temporary_files.remove_deleted();
-    return absl::OkStatus();
-  });
+  return answer(context, request, [&] { return delete_checkpoint(backend_, *request); });
 }
 
 Reactor* SimulationService::RestoreSimulation(Context* context, const v1::RestoreSimulationRequest* request,
@@ -326,6 +296,11 @@ Reactor* SimulationService::EvaluateSimulation(Context* context, const v1::Evalu
 grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* SimulationService::ExportTissueDeck(
     Context* context, const v1::ExportTissueDeckRequest* request) {
   return export_tissue_deck(backend_, context, *request);
+}
+
+grpc::ServerWriteReactor<v1::FindShapeResponse>* SimulationService::FindShape(Context* context,
+                                                                              const v1::FindShapeRequest* request) {
+  return find_shape(backend_, context, *request);
 }
 
 }  // namespace lipofill::server

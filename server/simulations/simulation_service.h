@@ -48,15 +48,20 @@ class SimulationService : public v1::SimulationService::CallbackService {
                               v1::Evaluation* response) override;
   grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>* ExportTissueDeck(
       Context* context, const v1::ExportTissueDeckRequest* request) override;
+  grpc::ServerWriteReactor<v1::FindShapeResponse>* FindShape(Context* context,
+                                                             const v1::FindShapeRequest* request) override;
 
  private:
   /// Adds to an answer what the store does not hold.
   using Amend = std::function<void(v1::Simulation& simulation)>;
-  /// Has the session act and answers with the simulation as it is then; FAILED_PRECONDITION when it
-  /// has ended, unless an equal request was carried out before that.
+  /// Goes on with a simulation that has settled.
+  using Continue = std::function<absl::Status(const std::string& id, const RequestKey& key, const Unwanted& unwanted)>;
+  /// Has the session act, or goes on with what has settled where a command does so, and answers
+  /// with the simulation as it is then; FAILED_PRECONDITION when it has ended, unless an equal
+  /// request was carried out before that.
   template <typename Request>
   Reactor* command(Context* context, const Request* request, v1::Simulation* response, const char* what, const Act& act,
-                   const Amend& amend = nullptr);
+                   const Amend& amend = nullptr, const Continue& go_on = nullptr);
 
   Backend& backend_;
 };

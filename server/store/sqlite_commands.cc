@@ -1,5 +1,3 @@
-#include <optional>
-
 #include "absl/strings/str_cat.h"
 #include "server/store/record_names.h"
 #include "server/store/row_sums.h"
@@ -8,12 +6,19 @@
 namespace lipofill::server {
 namespace {
 
-/// The state that a command leads to, where it sets one. STOPPED is not among them: a simulation
-/// has ended once its result is kept.
-std::optional<SimulationState> state_after(CommandKind kind) {
+/// The state that a command leads to. STOPPED is not among them: a simulation has ended once its
+/// result is kept. One that has settled goes on with an injection.
+SimulationState state_after(CommandKind kind, SimulationState before) {
   if (kind == CommandKind::kStart || kind == CommandKind::kResume) return SimulationState::kRunning;
   if (kind == CommandKind::kPause) return SimulationState::kPaused;
-  return std::nullopt;
+  if (kind == CommandKind::kInject && before == SimulationState::kSettled) return SimulationState::kRunning;
+  return before;
+}
+
+/// Forgets what was said of the end of a simulation that goes on.
+absl::Status forget_end(Database& database, const std::string& simulation) {
+  Query update(database, "UPDATE simulations SET reason = x'', summary = x'' WHERE id = ?");
+  return update.bind(simulation).run();
 }
 
 }  // namespace
@@ -24,8 +29,9 @@ absl::StatusOr<bool> SqliteStore::append_command(const CommandRecord& command, c
     const auto simulation = read_simulation(command.simulation);
     if (!simulation.ok()) return simulation.status();
     absl::Status done = write_command(command);
-    done.Update(write_state(command.simulation, state_after(command.kind).value_or(simulation->state),
-                            spec_message.empty() ? simulation->spec_message : spec_message));
+    const SimulationState state = state_after(command.kind, simulation->state);
+    done.Update(write_state(command.simulation, state, spec_message.empty() ? simulation->spec_message : spec_message));
+    if (has_ended(simulation->state) && !has_ended(state)) done.Update(forget_end(*database_, command.simulation));
     return done;
   });
   if (!earlier.ok()) return earlier.status();

@@ -32,6 +32,7 @@ const std::map<std::string, std::string>& expected_roles() {
                    "SimulationService/CheckPlan",
                    "SimulationService/EvaluateSimulation",
                    "SimulationService/ExportTissueDeck",
+                   "SimulationService/FindShape",
                    "SimulationService/GetCheckpoint",
                    "SimulationService/GetSeries",
                    "SimulationService/GetSimulation",

@@ -54,6 +54,8 @@ std::vector<Row> rows_about(const Possessions& theirs) {
       {"PatientService/DownloadScanMesh", named(theirs.scan)},
       {"SimulationService/CreateSimulation", R"({"spec":{"model":")" + theirs.model + "\"}}"},
       {"SimulationService/CheckPlan", R"({"spec":{"model":")" + theirs.model + "\"}}"},
+      {"SimulationService/FindShape", R"({"spec":{"model":")" + theirs.model + "\"}}"},
+      {"SimulationService/FindShape", R"({"simulation":")" + theirs.simulation + "\"}"},
       {"SimulationService/GetSimulation", named(theirs.simulation)},
       {"SimulationService/GetSimulation", R"({"name":")" + theirs.simulation + R"(","readMask":"nose"})"},
       {"SimulationService/StartSimulation", named(theirs.simulation)},

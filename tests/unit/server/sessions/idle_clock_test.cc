@@ -27,7 +27,8 @@ TEST(IdleClock, StandsAtZeroWhileItIsWatchedOrHeld) {
   const auto before = Clock::now();
   idle.let_go();
   EXPECT_FALSE(idle.is_held());
-  EXPECT_LE(idle.idle_time(), Clock::now() - before) << "time begins when it is let go of";
+  const Clock::duration idle_time = idle.idle_time();
+  EXPECT_LE(idle_time, Clock::now() - before) << "time begins when it is let go of";
   let_time_pass();
   EXPECT_GT(idle.idle_time(), Clock::duration::zero());
 }
@@ -37,7 +38,8 @@ TEST(IdleClock, BeginsAnewWithEveryUse) {
   let_time_pass();
   const auto before = Clock::now();
   idle.note_use();
-  EXPECT_LE(idle.idle_time(), Clock::now() - before);
+  const Clock::duration idle_time = idle.idle_time();
+  EXPECT_LE(idle_time, Clock::now() - before);
 }
 
 }  // namespace

@@ -127,7 +127,8 @@ void add_creation(CLI::App& group, Application& application, const std::shared_p
 
 void add_injection(CLI::App& group, Application& application, const std::shared_ptr<Options>& options) {
   CLI::App* command =
-      add_command(group, application, "inject", "Add an injection to a simulation that has not ended",
+      add_command(group, application, "inject",
+                  "Add an injection to a simulation that has not ended, or that has settled: it then goes on",
                   "  lipofill simulation inject abc --zone masseter --volume-ml 1.5 --rate-ml-per-s 0.5\n",
                   [&application, options] { return inject(application, *options); });
   command->add_option("simulation", options->name, "simulations/ID, or the ID alone")->required();

@@ -42,6 +42,7 @@ from lipofill.progress import Progress, print_progress
 from lipofill.retries import RetryPolicy
 from lipofill.runs import Run
 from lipofill.series import Series
+from lipofill.shapes import Shape
 from lipofill.simulations import Simulation
 from lipofill.watching import Watch
 
@@ -70,6 +71,7 @@ __all__ = [
     "RetryPolicy",
     "Run",
     "Series",
+    "Shape",
     "Simulation",
     "SimulationFailedError",
     "UnauthenticatedError",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from contextlib import suppress
 from types import TracebackType
-from typing import Any, Callable, Iterator, Optional, Sequence, Type, TypeVar
+from typing import Any, Callable, Iterator, Mapping, Optional, Sequence, Type, TypeVar, Union
 
 from lipofill.channel import Channel
 from lipofill.errors import (
@@ -18,6 +18,7 @@ from lipofill.errors import (
 from lipofill.frames import Frame
 from lipofill.progress import ProgressCallback, report
 from lipofill.series import Series, fetch_series
+from lipofill.shapes import Shape, assemble_shape
 from lipofill.v1 import geometry_pb2
 from lipofill.v1 import simulation_pb2 as messages
 from lipofill.v1 import simulation_service_pb2 as pb
@@ -108,8 +109,8 @@ class Simulation:
         start_s: Optional[float] = None,
         site: Optional[geometry_pb2.SkinPoint] = None,
     ) -> messages.Simulation:
-        """Adds an injection to a simulation that has not ended; by default it starts now, or after
-        those already due.
+        """Adds an injection to a simulation that has not ended, or that has settled and then goes on;
+        by default it starts now, or after those already due.
         """
         injection = messages.Injection(
             zone=zone, volume_ml=volume_ml, rate_ml_per_s=rate_ml_per_s, start_s=start_s, site=site
@@ -289,6 +290,57 @@ class Simulations:
         """
         request = pb.CheckPlanRequest(spec=spec)
         return self._channel.call(self._stub.CheckPlan, request, timeout_s=CREATION_TIMEOUT_S)
+
+    def find_shape(
+        self,
+        plan: Union[messages.SimulationSpec, str],
+        *,
+        volumes_ml: Optional[Mapping[int, float]] = None,
+        added_ml: Optional[Mapping[str, float]] = None,
+        drag: str = "",
+        from_rest: bool = False,
+        fields: Sequence[str] = (),
+        with_sensitivities: bool = False,
+    ) -> Shape:
+        """The settled shape of a plan with other volumes, found at once. Nothing of it is kept.
+
+        Parameters
+        ----------
+        plan : SimulationSpec or str
+            A plan that names its model, or a simulation: its plan with what was injected since.
+        volumes_ml : mapping of int to float
+            Volumes in place of those of the plan's injections, by their place in it from 0.
+        added_ml : mapping of str to float
+            Fat that zones have beyond the plan's, by zone; negative: taken out.
+        drag : str
+            Calls of one drag go on from one another's shapes, at a fraction of the cost.
+        from_rest : bool
+            Find the shape from rest all the same: equal plans give equal bytes.
+        fields : sequence of str
+            Of the meshes "skin" and "scan"; default: displacement and pressure of the skin.
+        with_sensitivities : bool
+            Say what a little more of each volume and each stiffness does.
+
+        Raises
+        ------
+        FailedPreconditionError
+            For a plan that has to be stepped; the message names the field that asks for it.
+        AbortedError
+            Where a newer call of the same drag took the place of this one.
+        """
+        request = pb.FindShapeRequest(
+            drag=drag, from_rest=from_rest, fields=fields, with_sensitivities=with_sensitivities
+        )
+        if isinstance(plan, str):
+            request.simulation = plan
+        else:
+            request.spec.CopyFrom(plan)
+        for index, volume_ml in (volumes_ml or {}).items():
+            request.injections.add(index=index, volume_ml=volume_ml)
+        for zone, volume_ml in (added_ml or {}).items():
+            request.added.add(zone=zone, volume_ml=volume_ml)
+        stream = self._stub.FindShape(request, metadata=self._channel.metadata())
+        return assemble_shape(self._channel.stream_items(stream))
 
     def list(self) -> Iterator[messages.Simulation]:
         """All, by name."""

@@ -127,6 +127,36 @@ TEST_F(CommandsTest, ChecksAPlanOnAModelAndMakesNothing) {
   EXPECT_EQ(ask("simulation list")["simulations"].size(), 0u);
 }
 
+TEST_F(CommandsTest, FindsShapesAndGoesOnWithASettledSimulation) {
+  ask("patient create --id p");
+  const std::string model = ask("model build p plan.json")["name"];
+  write_plan("settled.json", "/simulation/time", nlohmann::json{{"goal", "SETTLED_SHAPE"}});
+  const auto shape = ask("shape settled.json --sensitivities --volume 1=0.25 --model " + model);
+  EXPECT_NEAR(shape["summary"]["injected_ml"].get<double>(), 0.25, 1e-9);
+  EXPECT_EQ(shape["from_rest"], true);
+  EXPECT_EQ(shape["sensitivities"].size(), 2u) << "one pool, one layer";
+  EXPECT_EQ(ask("simulation list")["simulations"].size(), 0u) << "nothing is kept";
+  ask("simulation create settled.json --id s --start --model " + model);
+  EXPECT_EQ(tell("watch s").exit_code, 0);
+  const double lift = ask("simulation get s")["summary"]["skin_max_displacement_mm"];
+  const double foreseen = ask("shape simulations/s --add middle=0.1")["summary"]["skin_max_displacement_mm"];
+  EXPECT_GT(foreseen, lift);
+  ask("simulation inject s --zone middle --volume-ml 0.1 --rate-ml-per-s 1");
+  EXPECT_EQ(tell("watch s").exit_code, 0);
+  const auto went_on = ask("simulation get s");
+  EXPECT_EQ(went_on["state"], "SETTLED");
+  EXPECT_NEAR(went_on["summary"]["skin_max_displacement_mm"].get<double>(), foreseen, 0.003);
+  const CommandResult told = tell("shape simulations/s --add middle=0.1 --sensitivities");
+  EXPECT_THAT(told.output, HasSubstr("not run and not kept"));
+  EXPECT_THAT(told.output, HasSubstr("1 mL in middle"));
+
+  EXPECT_EQ(tell("shape settled.json").exit_code, 2) << "no model";
+  EXPECT_EQ(tell("shape simulations/s --add middle").exit_code, 2);
+  EXPECT_EQ(tell("shape simulations/s --volume 0=1").exit_code, 2);
+  EXPECT_THAT(tell("shape simulations/s --add nose=1").output, HasSubstr("nose"));
+  EXPECT_EQ(tell("shape simulations/none").exit_code, 4);
+}
+
 TEST_F(CommandsTest, KeepsAStateAndGoesBackToIt) {
   ask("patient create --id p");
   const std::string model = ask("model build p plan.json")["name"];

@@ -13,6 +13,9 @@
 namespace lipofill::bench {
 namespace {
 
+/// Fat with any has to be stepped [Pa].
+constexpr double kNegligibleYieldStress = 1e-6;
+
 /// The plan with what the daemon would have put there: the scan and the model are passed on as they
 /// are.
 absl::StatusOr<client::PlanFile> load_sample_plan() {
@@ -81,7 +84,10 @@ absl::StatusOr<JawAngle> make_jaw_angle(int scale) {
   if (!face.ok()) return face.status();
   auto model = model::build_face_model(face->model, nullptr);
   if (!model.ok()) return model.status();
-  return JawAngle{scale, *std::move(model), std::move(face->simulation), std::move(face->settled_shape)};
+  plan::SimulationSpec in_steps = face->settled_shape;
+  in_steps.fat_yield_stress = kNegligibleYieldStress;
+  return JawAngle{scale, *std::move(model), std::move(face->simulation), std::move(face->settled_shape),
+                  std::move(in_steps)};
 }
 
 }  // namespace lipofill::bench

@@ -30,6 +30,8 @@ struct JawAngle {
   std::shared_ptr<const model::FaceModel> model;
   plan::SimulationSpec spec;
   plan::SimulationSpec settled_shape;
+  /// The same with a yield stress far below what it takes to matter, for which it is stepped.
+  plan::SimulationSpec settled_in_steps;
 };
 absl::StatusOr<JawAngle> make_jaw_angle(int scale);
 

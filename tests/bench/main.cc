@@ -55,6 +55,9 @@ absl::Status set_up(const Options& options, Findings& findings) {
     auto bench = ScaleBench::create(scale, !options.steps_only);
     if (!bench.ok()) return bench.status();
     findings.scales.push_back(*std::move(bench));
+    auto equilibrium = EquilibriumBench::create(findings.scales.back()->jaw());
+    if (!equilibrium.ok()) return equilibrium.status();
+    findings.equilibria.push_back(*std::move(equilibrium));
   }
   return absl::OkStatus();
 }
@@ -74,6 +77,8 @@ absl::Status run_rounds(const Options& options, Findings& findings) {
     const JawAngle& jaw = findings.scales.front()->jaw();
     absl::Status settled = run_settled(jaw, jaw.spec, findings.as_planned);
     settled.Update(run_settled(jaw, jaw.settled_shape, findings.settled_shape));
+    settled.Update(run_settled(jaw, jaw.settled_in_steps, findings.settled_in_steps));
+    for (const auto& equilibrium : findings.equilibria) settled.Update(equilibrium->run_round());
     if (!settled.ok()) return settled;
     for (const auto& scale : findings.scales) {
       const int repeats = scale->scale() <= 1 ? kRepeatsOfSmallest : 1;

@@ -74,7 +74,14 @@ Json check_bounds(const Json& report) {
           bound("wall seconds to the settled shape", "settle_wall_s", report, true, 2.0),
           bound("the same with the goal SETTLED_SHAPE", "settle_fast_wall_s", report, true, 2.0),
           bound("frame and its encoding, share of a step", "frame_share", report, true, 0.05),
-          bound("memory a session [MB]", "session_mb", report, true, 100.0)};
+          bound("memory a session [MB]", "session_mb", report, true, 100.0),
+          bound("settled shape from rest, in F", "equilibrium_cold_f", report, true, 2.5),
+          bound("the same at 16x", "equilibrium_cold_f_16x", report, true, 3.5),
+          bound("a shape along a drag, in F", "drag_f", report, true, 0.2),
+          bound("a sensitivity, in F", "sensitivity_f", report, true, 0.3),
+          bound("a member of an ensemble, in F", "ensemble_member_f", report, true, 0.45),
+          bound("skin of the settled shape off by [mm]", "equilibrium_error_mm", report, true, 0.003),
+          bound("stepping to it over finding it", "fast_over_equilibrium", report, false, 8.0)};
 }
 
 void add_settled(const Findings& findings, Json& report) {
@@ -97,6 +104,29 @@ void add_settled(const Findings& findings, Json& report) {
                        {"settled_shape", findings.settled_shape.front().to_json()}};
 }
 
+const EquilibriumBench* equilibrium_at(const Findings& findings, int scale) {
+  for (const auto& bench : findings.equilibria) {
+    if (bench->scale() == scale) return bench.get();
+  }
+  return nullptr;
+}
+
+void add_equilibrium(const Findings& findings, Json& report) {
+  const Json base = findings.equilibria.front()->to_json();
+  for (const char* key : {"cold_f", "error_mm"}) report[std::string("equilibrium_") + key] = base.at(key);
+  for (const char* key : {"drag_f", "drag_updates_per_s", "sensitivity_f", "ensemble_member_f"}) {
+    report[key] = base.at(key);
+  }
+  const EquilibriumBench* largest = equilibrium_at(findings, 16);
+  report["equilibrium_cold_f_16x"] = largest != nullptr ? largest->to_json().at("cold_f") : Json(kNotMeasured);
+  const double unit_ms = base.at("unit_ms");
+  report["settled_in_steps_f"] = all_runs(findings.settled_in_steps).median_cpu_ms() / unit_ms;
+  report["fast_over_equilibrium"] =
+      report["settled_in_steps_f"].get<double>() / report["equilibrium_cold_f"].get<double>();
+  report["equilibria"] = Json::array();
+  for (const auto& bench : findings.equilibria) report["equilibria"].push_back(bench->to_json());
+}
+
 }  // namespace
 
 Json make_report(const Findings& findings) {
@@ -104,6 +134,7 @@ Json make_report(const Findings& findings) {
                  {"machine", describe_machine()},
                  {"rounds", findings.rounds}};
   add_settled(findings, report);
+  add_equilibrium(findings, report);
   report["growth_4x"] = growth_to(findings, 4);
   report["growth_16x"] = growth_to(findings, 16);
   report["frame_share"] = frame_share(*findings.scales.front());

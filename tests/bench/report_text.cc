@@ -76,6 +76,21 @@ void print_routes(const Json& scale, std::ostream& out) {
   out << " ms\n";
 }
 
+void print_equilibria(const Json& report, std::ostream& out) {
+  out << "\nthe settled shape directly; F: assembly, float32 factor and solve\n"
+      << "  " << std::left << std::setw(kNameWidth) << "in F" << std::right;
+  for (const Json& at : report.at("equilibria")) {
+    out << std::setw(kFigureWidth - 1) << at.at("scale") << "x";
+  }
+  out << "\n";
+  for (const char* key : {"unit_ms", "cold_f", "cold_factors", "cold_iterations", "drag_f", "drag_updates_per_s",
+                          "sensitivity_f", "ensemble_member_f", "error_mm"}) {
+    out << "  " << std::left << std::setw(kNameWidth) << key << std::right;
+    for (const Json& at : report.at("equilibria")) put(out, at.at(key));
+    out << "\n";
+  }
+}
+
 void print_bounds(const Json& report, std::ostream& out) {
   out << "\n"
       << std::left << std::setw(kNameWidth + 18) << "design, section 6" << std::right << std::setw(kFigureWidth)
@@ -101,6 +116,7 @@ void print_report(const Json& report, std::ostream& out) {
   out << "\nsettled after " << report.at("settle_wall_s").get<double>() << " s of wall time, "
       << report.at("settled").at("as_planned").at("steps") << " steps; state "
       << report.at("state_hash").get<std::string>() << "\n";
+  print_equilibria(report, out);
   print_bounds(report, out);
 }
 

@@ -1,0 +1,141 @@
+#include "tests/bench/equilibrium_bench.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace lipofill::bench {
+namespace {
+
+constexpr double kTolerance = 1e-3;
+constexpr double kExact = 1e-9;
+/// A drag moves a slider by so much at a time [m3].
+constexpr double kDragStep = 0.1e-6;
+constexpr int kDragSteps = 20;
+constexpr int kMembers = 12;
+/// Moduli of members lie within this factor of the nominal ones.
+constexpr double kLargestModulus = 1.25;
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<EquilibriumBench>> EquilibriumBench::create(const JawAngle& jaw) {
+  std::unique_ptr<EquilibriumBench> bench(new EquilibriumBench());
+  if (const absl::Status status = bench->set_up(jaw); !status.ok()) return status;
+  return bench;
+}
+
+absl::Status EquilibriumBench::set_up(const JawAngle& jaw) {
+  scale_ = jaw.scale;
+  if (auto placed = plan::place_plan(*jaw.model, jaw.settled_shape, nullptr, placed_); !placed.ok()) return placed;
+  auto stepper = step::CoupledStep::create(*jaw.model, placed_.films, jaw.settled_shape);
+  if (!stepper.ok()) return stepper.status();
+  stepper_ = *std::move(stepper);
+  auto factor = mechanics::TissueFactor::create(*jaw.model, *stepper_->system(), stepper_->cost());
+  if (!factor.ok()) return factor.status();
+  factor_ = *std::move(factor);
+  auto made = equilibrium::Equilibrium::create(
+      *jaw.model, placed_.films, stepper_->cells(), *stepper_->system(), stepper_->geometry(),
+      {jaw.settled_shape.gravity, jaw.settled_shape.fat_density}, stepper_->cost());
+  if (!made.ok()) return made.status();
+  equilibrium_ = *std::move(made);
+  const mechanics::SimulationState rest = stepper_->rest_state();
+  springs_ = rest.spring_is_intact;
+  std::vector<Eigen::VectorXd> injected;
+  const auto enough = [](int, int) { return std::numeric_limits<double>::max(); };
+  placed_.schedule.deliver(placed_.films, enough, 0.0, placed_.schedule.end(), injected);
+  Eigen::VectorXd all(stepper_->cells().n()), on_tissue;
+  for (size_t f = 0; f < injected.size(); ++f) {
+    all.segment(stepper_->cells().offset[f], injected[f].size()) = injected[f];
+  }
+  stepper_->cells().gather_tissue_part(all, on_tissue);
+  target_.volume = equilibrium_->rest_volume() + equilibrium_->pools().sum(on_tissue);
+  exact_ = equilibrium_->find(target_, springs_, kExact);
+  return exact_.is_whole() ? absl::OkStatus() : absl::InternalError("no equilibrium: " + exact_.reason);
+}
+
+absl::Status EquilibriumBench::run_round() {
+  if (const absl::Status measured = measure_unit(); !measured.ok()) return measured;
+  measure_cold();
+  measure_drag();
+  measure_sensitivities();
+  return measure_members();
+}
+
+/// At the settled shape; where the system has to compute anew, as it is in an iteration.
+absl::Status EquilibriumBench::measure_unit() {
+  Eigen::VectorXd answer;
+  const Eigen::VectorXd load = Eigen::VectorXd::Ones(stepper_->system()->tissue().n_dofs());
+  factor_->begin();
+  Stopwatch watch;
+  const bool factored = factor_->factor_at(exact_.positions, springs_);
+  factor_->solve(load, answer);
+  unit_.add(watch.lap());
+  return factored ? absl::OkStatus() : absl::InternalError("the tissue is not positive definite");
+}
+
+void EquilibriumBench::measure_cold() {
+  Stopwatch watch;
+  const equilibrium::Settled found = equilibrium_->find(target_, springs_, kTolerance);
+  cold_.add(watch.lap());
+  cold_cost_ = found.cost;
+  double largest = 0.0;
+  for (const int node : stepper_->tissue()->skin_nodes) {
+    largest = std::max(largest, (found.positions.col(node) - exact_.positions.col(node)).norm());
+  }
+  error_mm_ = std::max(error_mm_, 1e3 * largest);
+}
+
+/// To and fro about the plan's volume in the first pool.
+void EquilibriumBench::measure_drag() {
+  equilibrium::PoolTarget dragged = target_;
+  equilibrium_->follow(dragged, springs_, kTolerance);
+  for (int k = 0; k < kDragSteps; ++k) {
+    dragged.volume[0] += k % 10 < 5 ? -kDragStep : kDragStep;
+    Stopwatch watch;
+    equilibrium_->follow(dragged, springs_, kTolerance);
+    drag_.add(watch.lap());
+  }
+}
+
+void EquilibriumBench::measure_sensitivities() {
+  equilibrium_->find(target_, springs_, kTolerance);
+  Stopwatch watch;
+  const size_t n = equilibrium_->differentiate_by_volume().size() + equilibrium_->differentiate_by_modulus().size();
+  sensitivity_.add(watch.lap());
+  n_sensitivities_ = static_cast<int>(n);
+}
+
+absl::Status EquilibriumBench::measure_members() {
+  equilibrium::Ensemble ensemble(*equilibrium_, target_, springs_, kTolerance);
+  const int n_layers = stepper_->system()->n_layers();
+  for (int k = 0; k < kMembers; ++k) {
+    equilibrium::MemberChange change{Eigen::VectorXd(n_layers), target_.volume};
+    for (int layer = 0; layer < n_layers; ++layer) {
+      change.moduli[layer] = std::pow(kLargestModulus, std::sin(1.0 + 3.0 * k + 5.0 * layer));
+    }
+    Stopwatch watch;
+    const auto member = ensemble.find(change);
+    member_.add(watch.lap());
+    if (!member.ok()) return member.status();
+    if (!member->is_whole()) return absl::InternalError("a member has no shape: " + member->reason);
+  }
+  return absl::OkStatus();
+}
+
+nlohmann::ordered_json EquilibriumBench::to_json() const {
+  const double unit = unit_.median_cpu_ms();
+  return {{"scale", scale_},
+          {"unit_ms", unit},
+          {"cold_f", cold_.median_cpu_ms() / unit},
+          {"cold_factors", cold_cost_.factors},
+          {"cold_iterations", cold_cost_.iterations},
+          {"drag_f", drag_.median_cpu_ms() / unit},
+          {"drag_updates_per_s", 1e3 / drag_.mean_cpu_ms()},
+          {"sensitivity_f", sensitivity_.median_cpu_ms() / unit / std::max(1, n_sensitivities_)},
+          {"sensitivities", n_sensitivities_},
+          {"ensemble_member_f", member_.median_cpu_ms() / unit},
+          {"error_mm", error_mm_}};
+}
+
+}  // namespace lipofill::bench

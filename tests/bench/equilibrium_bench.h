@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "core/equilibrium/ensemble.h"
+#include "core/plan/plan_placement.h"
+#include "core/step/coupled_step.h"
+#include "tests/bench/jaw_angle.h"
+#include "tests/bench/measure.h"
+
+namespace lipofill::bench {
+
+/// The settled shape of jaw_angle, found directly, beside F: one assembly, factorisation in float32
+/// and solve of the same tissue. What a model can keep at hand is there before.
+class EquilibriumBench {
+ public:
+  static absl::StatusOr<std::unique_ptr<EquilibriumBench>> create(const JawAngle& jaw);
+
+  /// Does everything in turn.
+  absl::Status run_round();
+  int scale() const { return scale_; }
+  /// F [ms], and everything else over F.
+  nlohmann::ordered_json to_json() const;
+
+ private:
+  EquilibriumBench() = default;
+  absl::Status set_up(const JawAngle& jaw);
+  absl::Status measure_unit();
+  void measure_cold();
+  void measure_drag();
+  void measure_sensitivities();
+  absl::Status measure_members();
+
+  int scale_ = 1;
+  plan::PlacedPlan placed_;
+  std::unique_ptr<step::CoupledStep> stepper_;
+  std::unique_ptr<mechanics::TissueFactor> factor_;
+  std::unique_ptr<equilibrium::Equilibrium> equilibrium_;
+  equilibrium::PoolTarget target_;
+  Eigen::VectorXd springs_;
+  equilibrium::Settled exact_;  ///< with forces to 1e-9
+  double error_mm_ = 0.0;       ///< of the skin, of the shape that is found cold
+  equilibrium::SolverCost cold_cost_;
+  int n_sensitivities_ = 0;
+  Samples unit_, cold_, drag_, sensitivity_, member_;
+};
+
+}  // namespace lipofill::bench

@@ -16,8 +16,14 @@ std::string time_text(const google::protobuf::Timestamp& time) {
 }
 
 std::string statistics_line(const char* what, const v1::DistanceStatistics& statistics) {
-  return absl::StrFormat("  %-24s %7.2f %7.2f %7.2f %7.2f\n", what, statistics.mean_mm(), statistics.rms_mm(),
-                         statistics.p95_mm(), statistics.max_mm());
+  return absl::StrFormat("  %-24s %7.2f %7.2f %7.2f %7.2f %7.2f %7.2f %7.0f %7.0f\n", what, statistics.mean_mm(),
+                         statistics.rms_mm(), statistics.median_mm(), statistics.p90_mm(), statistics.p95_mm(),
+                         statistics.max_mm(), 100.0 * statistics.share_under_1_mm(),
+                         100.0 * statistics.share_under_2_mm());
+}
+
+std::string volume_line(const char* what, const v1::VolumeToTarget& volume) {
+  return absl::StrFormat("  %-24s %7.2f mL missing, %.2f mL too much\n", what, volume.deficit_ml(), volume.excess_ml());
 }
 
 std::string operation_state(const v1::Operation& operation) {
@@ -88,13 +94,14 @@ std::string describe(const v1::Operation& operation) {
 }
 
 std::string describe(const v1::Evaluation& evaluation) {
-  return absl::StrCat("Distance to the target, mm     mean     rms     95 %     max\n",
+  return absl::StrCat("Distance to the target, mm     mean     rms  median    90 %    95 %     max  % <1mm  % <2mm\n",
                       statistics_line("before", evaluation.before_to_target()),
                       statistics_line("simulated to target", evaluation.simulated_to_target()),
                       statistics_line("target to simulated", evaluation.target_to_simulated()),
                       absl::StrFormat("  Hausdorff distance %.2f mm, over %d points of the %s mesh\n",
                                       evaluation.hausdorff_mm(), evaluation.vertices_size(), evaluation.mesh()),
-                      kNotAMedicalDevice, "\n");
+                      "Volume to the target\n", volume_line("before", evaluation.volume_before()),
+                      volume_line("simulated", evaluation.volume_simulated()), kNotAMedicalDevice, "\n");
 }
 
 std::string describe(const v1::CheckPlanResponse& check) {

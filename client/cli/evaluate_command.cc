@@ -1,5 +1,7 @@
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/application.h"
@@ -10,6 +12,7 @@
 #include "client/cli/simulation_calls.h"
 #include "client/cli/units.h"
 #include "client/cpp/json_file.h"
+#include "client/cpp/requirement.h"
 
 namespace lipofill::client {
 namespace {
@@ -19,6 +22,7 @@ struct Options {
   std::string target;
   std::string out;
   v1::ScanUnit unit = v1::MILLIMETRE;
+  std::vector<std::string> required;
 };
 
 bool is_folder(const std::string& path) {
@@ -36,8 +40,22 @@ absl::Status prepare_folder(const std::filesystem::path& folder, const RunRecord
   return write_run_record(folder, record);
 }
 
+/// Tells of the requirements that are missed.
+ExitCode check_required(const std::vector<Requirement>& required, const v1::Evaluation& evaluation) {
+  ExitCode code = ExitCode::kOk;
+  for (const Requirement& requirement : required) {
+    const double figure = requirement.figure_of(evaluation);
+    if (requirement.is_met(figure)) continue;
+    std::cerr << "lipofill: required " << requirement.text << ", it is " << figure << "\n";
+    code = ExitCode::kGoalNotReached;
+  }
+  return code;
+}
+
 absl::StatusOr<ExitCode> evaluate_on(Application& application, const Connection& connection, const std::string& name,
                                      const Options& options, const std::filesystem::path& out) {
+  const auto required = read_requirements(options.required);
+  if (!required.ok()) return required.status();
   const auto simulation = get_simulation(connection, name);
   if (!simulation.ok()) return simulation.status();
   const auto record = record_of_simulation(connection, *simulation);
@@ -52,7 +70,7 @@ absl::StatusOr<ExitCode> evaluate_on(Application& application, const Connection&
   } else {
     std::cout << describe(*evaluation);
   }
-  return ExitCode::kOk;
+  return check_required(*required, *evaluation);
 }
 
 /// A folder knows its simulation: on the daemon that ran it, or in the state a private one left in
@@ -89,11 +107,16 @@ void add_evaluate_command(CLI::App& root, Application& application) {
                                   "directions, inside the region: writes "
                                   "evaluation.json, distance.vtp and distance.png",
                                   "  lipofill evaluate result --target goal.obj\n  lipofill evaluate simulations/abc "
-                                  "--target goal.obj --out result\n",
+                                  "--target goal.obj --out result\n  lipofill evaluate result --target goal.obj "
+                                  "--require 'p95_mm<=2' --require 'volume_simulated.deficit_ml<=0.5'\n",
                                   [&application, options] { return evaluate(application, *options); });
   command->add_option("result", options->result, "a folder that lipofill run wrote, or simulations/ID")->required();
   command->add_option("--target", options->target, ".obj, .ply or .stl, or patients/ID/scans/ID")->required();
   command->add_option("--out", options->out, "folder; default: the folder of results");
+  command->add_option("--require", options->required,
+                      "FIGURE<=NUMBER or FIGURE>=NUMBER, as \"p95_mm<=2\": exit code 1 where it is missed. FIGURE is a "
+                      "name of evaluation.json; one of statistics is from the simulated skin to the target, others as "
+                      "\"target_to_simulated.max_mm\", \"volume_simulated.deficit_ml\"; may be repeated");
   command->add_option("--unit", options->unit, "unit of the target's numbers: mm (default), cm or m")
       ->transform(CLI::CheckedTransformer(kUnitNames));
 }

@@ -1,6 +1,7 @@
 #include "core/geometry/surface_distance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/geometry/surface_locator.h"
@@ -136,6 +137,31 @@ absl::StatusOr<std::vector<SurfacePoint>> find_opposite_vertices(const SurfaceMe
   return opposite;
 }
 
+/// A triangle whose corners move in straight lines.
+struct MovingTriangle {
+  std::array<Eigen::Vector3d, 3> corners, motions;
+
+  Eigen::Vector3d area_at(double s) const {
+    const auto edge = [&](int k) -> Eigen::Vector3d { return corners[k] - corners[0] + s * (motions[k] - motions[0]); };
+    return 0.5 * edge(1).cross(edge(2));
+  }
+  double swept_volume() const {
+    const Eigen::Vector3d mean = (motions[0] + motions[1] + motions[2]) / 3.0;
+    return std::abs(mean.dot(area_at(0.0) + 4.0 * area_at(0.5) + area_at(1.0))) / 6.0;  // exact: quadratic in s
+  }
+};
+
+/// The mean over a triangle of the positive part of distances that are linear over it.
+double mean_of_positive_part(std::array<double, 3> d) {
+  std::sort(d.begin(), d.end());
+  const double mean = (d[0] + d[1] + d[2]) / 3.0;
+  if (d[0] >= 0.0) return mean;
+  if (d[2] <= 0.0) return 0.0;
+  // One corner alone has its sign: over the part it cuts off the distance falls from its own to 0.
+  if (d[1] <= 0.0) return d[2] * d[2] * d[2] / (3.0 * (d[2] - d[0]) * (d[2] - d[1]));
+  return mean - d[0] * d[0] * d[0] / (3.0 * (d[0] - d[1]) * (d[0] - d[2]));
+}
+
 }  // namespace
 
 std::vector<double> compute_signed_distances(const Eigen::Matrix3Xd& points, const SurfaceMesh& surface) {
@@ -165,12 +191,59 @@ DistanceStatistics compute_distance_statistics(const std::vector<double>& distan
   double squares = 0.0;
   for (const double d : magnitudes) statistics.mean += d, squares += d * d;
   const auto n = static_cast<double>(magnitudes.size());
+  // The smallest value that at least this share does not exceed.
+  const auto quantile = [&](double share) { return magnitudes[static_cast<size_t>(std::ceil(share * n)) - 1]; };
+  const auto share_under = [&](double distance) {
+    const auto end = std::lower_bound(magnitudes.begin(), magnitudes.end(), distance);
+    return static_cast<double>(end - magnitudes.begin()) / n;
+  };
   statistics.mean /= n;
   statistics.rms = std::sqrt(squares / n);
+  statistics.median = quantile(0.5);
+  statistics.p90 = quantile(0.9);
+  statistics.p95 = quantile(0.95);
   statistics.max = magnitudes.back();
-  // The smallest value that at least 95 % do not exceed.
-  statistics.p95 = magnitudes[static_cast<size_t>(std::ceil(0.95 * n)) - 1];
+  statistics.share_under_1_mm = share_under(1e-3);
+  statistics.share_under_2_mm = share_under(2e-3);
+  for (const double d : distances) statistics.signed_mean += d / n;
   return statistics;
+}
+
+absl::StatusOr<VolumeBetween> compute_volume_between(const SurfaceMesh& patch, const SurfaceMesh& surface,
+                                                     const Unwanted& unwanted) {
+  VolumeBetween volume;
+  if (patch.triangles.empty() || surface.triangles.empty()) return volume;
+  Patience patience(unwanted);
+  const SurfaceLocator locator(surface);
+  const DistanceSigner signer(surface);
+  Eigen::Matrix3Xd motion(3, patch.n_vertices());
+  std::vector<double> distance;
+  for (int v = 0; v < patch.n_vertices(); ++v) {
+    if (absl::Status wanted = patience.check_next(); !wanted.ok()) return wanted;
+    const SurfacePoint nearest = locator.find_nearest(patch.points.col(v));
+    motion.col(v) = nearest.position - patch.points.col(v);
+    distance.push_back(signer.sign(nearest, patch.points.col(v)));
+  }
+  for (const auto& t : patch.triangles) {
+    MovingTriangle moving;
+    std::array<double, 3> distances{};
+    for (int k = 0; k < 3; ++k) {
+      moving.corners[k] = patch.points.col(t[k]);
+      moving.motions[k] = motion.col(t[k]);
+      distances[k] = distance[static_cast<size_t>(t[k])];
+    }
+    const auto [least, most] = std::minmax_element(distances.begin(), distances.end());
+    if (*least >= 0.0 || *most <= 0.0) {
+      (*least >= 0.0 ? volume.excess : volume.deficit) += moving.swept_volume();
+      continue;
+    }
+    const double outside = mean_of_positive_part(distances);
+    const double inside = outside - (distances[0] + distances[1] + distances[2]) / 3.0;
+    const double area = moving.area_at(0.5).norm();
+    volume.excess += area * outside;
+    volume.deficit += area * inside;
+  }
+  return volume;
 }
 
 absl::StatusOr<PatchDistance> compute_patch_distance(const SurfaceMesh& patch, const SurfaceMesh& target,

@@ -89,6 +89,19 @@ absl::StatusOr<SkinPatch> make_square_patch(const v1::MeshSlice& meshes, const v
   return patch;
 }
 
+v1::DistanceStatistics to_signed_statistics(const geometry::DistanceStatistics& statistics) {
+  v1::DistanceStatistics message = to_distance_statistics(statistics);
+  message.set_signed_mean_mm(statistics.signed_mean * kMillimetresPerMetre);
+  return message;
+}
+
+v1::VolumeToTarget to_volume(const geometry::VolumeBetween& volume) {
+  v1::VolumeToTarget message;
+  message.set_deficit_ml(volume.deficit / kCubicMetresPerMillilitre);
+  message.set_excess_ml(volume.excess / kCubicMetresPerMillilitre);
+  return message;
+}
+
 }  // namespace
 
 absl::StatusOr<SkinPatch> make_skin_patch(const model::FaceModel& model, const v1::MeshSlice& meshes,
@@ -107,12 +120,18 @@ absl::StatusOr<v1::Evaluation> evaluate(const SkinPatch& patch, const geometry::
   if (!distance.ok()) return distance.status();
   const auto before = geometry::compute_signed_distances(patch.before.points, target, unwanted);
   if (!before.ok()) return before.status();
+  const auto volume_before = geometry::compute_volume_between(patch.before, target, unwanted);
+  if (!volume_before.ok()) return volume_before.status();
+  const auto volume_after = geometry::compute_volume_between(patch.after, target, unwanted);
+  if (!volume_after.ok()) return volume_after.status();
   v1::Evaluation evaluation;
-  *evaluation.mutable_simulated_to_target() = to_distance_statistics(distance->patch_to_target_statistics);
+  *evaluation.mutable_simulated_to_target() = to_signed_statistics(distance->patch_to_target_statistics);
   *evaluation.mutable_target_to_simulated() = to_distance_statistics(distance->target_to_patch_statistics);
   evaluation.set_hausdorff_mm(
       std::max(evaluation.simulated_to_target().max_mm(), evaluation.target_to_simulated().max_mm()));
-  *evaluation.mutable_before_to_target() = to_distance_statistics(geometry::compute_distance_statistics(*before));
+  *evaluation.mutable_before_to_target() = to_signed_statistics(geometry::compute_distance_statistics(*before));
+  *evaluation.mutable_volume_before() = to_volume(*volume_before);
+  *evaluation.mutable_volume_simulated() = to_volume(*volume_after);
   for (const double d : distance->patch_to_target) {
     evaluation.add_distance_mm(static_cast<float>(kMillimetresPerMetre * d));
   }

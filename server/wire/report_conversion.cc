@@ -235,6 +235,10 @@ v1::DistanceStatistics to_distance_statistics(const geometry::DistanceStatistics
   message.set_rms_mm(statistics.rms * kMillimetresPerMetre);
   message.set_p95_mm(statistics.p95 * kMillimetresPerMetre);
   message.set_max_mm(statistics.max * kMillimetresPerMetre);
+  message.set_median_mm(statistics.median * kMillimetresPerMetre);
+  message.set_p90_mm(statistics.p90 * kMillimetresPerMetre);
+  message.set_share_under_1_mm(statistics.share_under_1_mm);
+  message.set_share_under_2_mm(statistics.share_under_2_mm);
   return message;
 }
 

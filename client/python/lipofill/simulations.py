@@ -109,8 +109,8 @@ class Simulation:
         start_s: Optional[float] = None,
         site: Optional[geometry_pb2.SkinPoint] = None,
     ) -> messages.Simulation:
-        """Adds an injection to a simulation that has not ended, or that has settled and then goes on;
-        by default it starts now, or after those already due.
+        """Adds an injection to a simulation that has not ended, or that has settled: then it goes
+        on. By default it starts now, or after those already due.
         """
         injection = messages.Injection(
             zone=zone, volume_ml=volume_ml, rate_ml_per_s=rate_ml_per_s, start_s=start_s, site=site

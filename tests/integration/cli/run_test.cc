@@ -154,9 +154,17 @@ TEST_F(RunTest, DrawsAndEvaluatesTheFolder) {
   const auto evaluation = answer_of("lipofill evaluate out --target goal.obj");
   // The square's skin lies at z = 0 before, everywhere 1 mm from the goal.
   EXPECT_NEAR(evaluation["before_to_target"]["max_mm"].get<double>(), 1.0, 1e-6);
+  EXPECT_NEAR(evaluation["before_to_target"]["signed_mean_mm"].get<double>(), -1.0, 1e-6);
+  EXPECT_EQ(evaluation["before_to_target"]["share_under_2_mm"].get<double>(), 1.0);
+  EXPECT_NEAR(evaluation["volume_before"]["deficit_ml"].get<double>(), 1.6, 1e-4);
   EXPECT_EQ(evaluation["points"], 13 * 13);
   EXPECT_EQ(evaluation, read_json("out/evaluation.json"));
   EXPECT_EQ(read("out/distance.png").substr(1, 3), "PNG");
+  EXPECT_EQ(run("lipofill evaluate out --target goal.obj --require 'hausdorff_mm<=100'").exit_code, 0);
+  const CommandResult missed = run("lipofill evaluate out --target goal.obj --require 'max_mm<=0.001'");
+  EXPECT_EQ(missed.exit_code, 1);
+  EXPECT_THAT(missed.errors, HasSubstr("required max_mm<=0.001, it is "));
+  EXPECT_EQ(run("lipofill evaluate out --target goal.obj --require 'nose<=1'").exit_code, 2);
 
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName((folder_ / "out/distance.vtp").c_str());

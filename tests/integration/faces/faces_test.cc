@@ -103,6 +103,11 @@ TEST_F(FacesTest, PatientWithAtrophyComesNearerToTheGoal) {
     std::cout << figure << " to the goal: before " << before.at(figure) << ", after " << after.at(figure) << "\n";
     EXPECT_LT(number(after, figure), number(before, figure)) << figure;
   }
+  const double missing = number(evaluation.at("volume_before"), "deficit_ml");
+  const double left = number(evaluation.at("volume_simulated"), "deficit_ml");
+  std::cout << "missing within the patch: before " << missing << " mL, after " << left << " mL\n";
+  EXPECT_THAT(missing, AllOf(Gt(4.0), Lt(10.9))) << "10.817 mL are missing on the whole cheek";
+  EXPECT_LT(left, missing);
   EXPECT_EQ(evaluation.at("mesh"), "scan");
   EXPECT_GT(evaluation.at("points"), 100);
   // The atrophy is 7.486 mm at its deepest vertex.

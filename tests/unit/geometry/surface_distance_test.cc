@@ -57,6 +57,11 @@ TEST(SurfaceDistance, StatisticsAreThoseOfTheMagnitudes) {
   EXPECT_NEAR(statistics.rms, 1e-3 * std::sqrt(338350.0 / 100.0), 1e-12);
   EXPECT_NEAR(statistics.p95, 95e-3, 1e-12);
   EXPECT_NEAR(statistics.max, 100e-3, 1e-12);
+  EXPECT_NEAR(statistics.median, 50e-3, 1e-12);
+  EXPECT_NEAR(statistics.p90, 90e-3, 1e-12);
+  EXPECT_NEAR(statistics.share_under_1_mm, 0.0, 1e-12) << "one value is 1 mm, none is nearer";
+  EXPECT_NEAR(statistics.share_under_2_mm, 0.01, 1e-12);
+  EXPECT_NEAR(statistics.signed_mean, 0.5e-3, 1e-12);
   EXPECT_EQ(compute_distance_statistics({}).max, 0.0);
 }
 
@@ -76,6 +81,46 @@ TEST(SurfaceDistance, OfAPatchLeavesOutTheFarSideOfAClosedTarget) {
   std::erase_if(cap.triangles, [&](const std::array<int, 3>& t) { return cap.points(2, t[0]) < 0.04; });
   const PatchDistance distance = *compute_patch_distance(cap, whole);
   EXPECT_NEAR(distance.target_to_patch_statistics.max, 0.002, 1e-4);
+}
+
+TEST(SurfaceDistance, TheVolumeToAParallelPlateIsExact) {
+  const SurfaceMesh target = make_plate(0.0, 0.2, 50);
+  const VolumeBetween above = *compute_volume_between(make_plate(0.004, 0.04, 8), target);
+  EXPECT_NEAR(above.excess, 0.004 * 0.04 * 0.04, 1e-12);
+  EXPECT_EQ(above.deficit, 0.0);
+  const VolumeBetween below = *compute_volume_between(make_plate(-0.003, 0.04, 8), target);
+  EXPECT_NEAR(below.deficit, 0.003 * 0.04 * 0.04, 1e-12);
+  EXPECT_EQ(below.excess, 0.0);
+}
+
+/// A plate that is tilted through the target has a wedge on either side; its nearest points lie
+/// along the target's normal, so that each wedge is that of the plate's shadow.
+TEST(SurfaceDistance, TheVolumeToATiltedPlateIsTwoWedges) {
+  SurfaceMesh patch = make_plate(0.0, 0.04, 7);  // the line of change does not run along edges
+  const Eigen::Vector3d middle = patch.points.rowwise().mean();
+  const double slope = 0.1;
+  for (int v = 0; v < patch.n_vertices(); ++v) patch.points(2, v) = slope * (patch.points(0, v) - middle[0]);
+  const VolumeBetween volume = *compute_volume_between(patch, make_plate(0.0, 0.2, 50));
+  const double wedge = 0.5 * 0.02 * (slope * 0.02) * 0.04;
+  EXPECT_NEAR(volume.excess, wedge, 0.01 * wedge);
+  EXPECT_NEAR(volume.deficit, wedge, 0.01 * wedge);
+}
+
+/// Between concentric spheres: second order in the size of the triangles.
+TEST(SurfaceDistance, TheVolumeBetweenSpheresConverges) {
+  constexpr double kPi = 3.14159265358979323846;
+  const double exact = 4.0 / 3.0 * kPi * (std::pow(0.053, 3) - std::pow(0.05, 3));
+  double last_error = 0.0;
+  for (const int n : {12, 24, 48}) {
+    const VolumeBetween volume = *compute_volume_between(make_sphere(0.05, n), make_sphere(0.053, n));
+    EXPECT_EQ(volume.excess, 0.0);
+    const double error = std::abs(volume.deficit / exact - 1.0);
+    if (last_error > 0.0) {
+      EXPECT_GT(std::log2(last_error / error), 1.5) << n;
+    }
+    last_error = error;
+  }
+  EXPECT_LT(last_error, 0.01);
 }
 
 TEST(SurfaceDistance, IsGivenUpWhereverItIsOnceNobodyWantsIt) {

@@ -78,6 +78,12 @@ absl::StatusOr<v1::FindShapeRequest> make_request(const Options& options) {
   return request;
 }
 
+std::string change_of(const v1::ShapeSensitivity& by) {
+  if (by.parameter() == v1::ShapeSensitivity::POOL_VOLUME) return absl::StrCat("1 mL in ", by.name());
+  return absl::StrCat(by.parameter() == v1::ShapeSensitivity::LAYER_THICKNESS ? "1 % thicker " : "1 % stiffer ",
+                      by.name());
+}
+
 std::string describe(const v1::FoundShape& shape) {
   const v1::Summary& summary = shape.summary();
   std::string text = absl::StrFormat(
@@ -90,10 +96,8 @@ std::string describe(const v1::FoundShape& shape) {
   }
   if (!shape.sensitivities().empty()) text += "A little more of one thing, all others kept:\n";
   for (const v1::ShapeSensitivity& by : shape.sensitivities()) {
-    const bool is_volume = by.parameter() == v1::ShapeSensitivity::POOL_VOLUME;
-    absl::StrAppendFormat(&text, "  %-40s moves the skin by up to %.3f mm and lifts %.3f mL\n",
-                          absl::StrCat(is_volume ? "1 mL in " : "1 % stiffer ", by.name()), by.max_displacement_mm(),
-                          by.skin_volume_ml());
+    absl::StrAppendFormat(&text, "  %-40s moves the skin by up to %.3f mm and lifts %.3f mL\n", change_of(by),
+                          by.max_displacement_mm(), by.skin_volume_ml());
     for (int pool = 0; pool < by.pressure_pa_size(); ++pool) {
       absl::StrAppendFormat(&text, "    pressure in %-26s %+.1f Pa\n", shape.pools(pool).zones(), by.pressure_pa(pool));
     }

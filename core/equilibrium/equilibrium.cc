@@ -135,6 +135,23 @@ std::vector<std::optional<Sensitivity>> Equilibrium::differentiate_by_modulus() 
   return all;
 }
 
+bool Equilibrium::has_same_unknowns(const Equilibrium& other) const {
+  return pools_.of_cell == other.pools_.of_cell &&
+         system_.tissue().dof_of_component() == other.system_.tissue().dof_of_component();
+}
+
+std::optional<Sensitivity> Equilibrium::differentiate_towards(Equilibrium& beside, double step) {
+  if (!has_same_unknowns(beside)) return {};
+  const Shape base = refine_last();
+  beside.balance_.bring_to(base, last_springs_);
+  LoadChange change;
+  change.force = (beside.balance_.force() - balance_.force()) / step;
+  change.volume = base.reduce(pools_, balance_.gap() - beside.balance_.gap()) / step;
+  // What cells hold at rest is as much as their walls are large; what was injected is the same.
+  change.volume.head(pools_.n()) += (beside.rest_volume() - rest_volume()) / step;
+  return differentiate(base, change);
+}
+
 /// The last shape, closer to balance where that can be. The balance is there.
 Shape Equilibrium::refine_last() {
   Shape refined = last_;

@@ -87,6 +87,9 @@ class Equilibrium {
   /// volume is in. A parameter whose answer does not converge has none.
   std::vector<std::optional<Sensitivity>> differentiate_by_volume();   ///< of each pool [1/m3]
   std::vector<std::optional<Sensitivity>> differentiate_by_modulus();  ///< of ln E of each layer
+  /// The same of whatever makes the tissue of `beside` from this one, with the same nodes, cells
+  /// and injections, by `step` units of it.
+  std::optional<Sensitivity> differentiate_towards(Equilibrium& beside, double step);
 
  private:
   Equilibrium(Pools pools, std::unique_ptr<mechanics::TissueFactor> factor, const std::vector<plan::FilmLayout>& films,
@@ -94,6 +97,7 @@ class Equilibrium {
               const StaticLoad& load);
   Settled describe(const PoolTarget& target, const Shape& shape, double share) const;
   Shape refine_last();
+  bool has_same_unknowns(const Equilibrium& other) const;
   std::optional<Eigen::VectorXd> differentiate_force(const Shape& at, int layer);
   std::optional<Sensitivity> differentiate(const Shape& at, const LoadChange& change);
 

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
 #include "core/coupling/gap_volume.h"
+#include "core/model/thicker_model.h"
 #include "core/simulation/simulation_impl.h"
 
 namespace lipofill::simulation {
@@ -18,6 +18,8 @@ namespace {
 constexpr double kRateOfAdded = 1e-6;
 /// Of the largest displacement, over which the volume that a small motion sweeps is measured [m].
 constexpr double kSweep = 1e-6;
+/// A layer is thicker by this share where the difference to it is taken.
+constexpr double kThickening = 1e-4;
 
 absl::Status has_to_be_stepped(const std::string& why) {
   return absl::FailedPreconditionError(
@@ -128,34 +130,55 @@ absl::Status TrialShape::find(const TrialVolumes& volumes, bool from_last) {
 std::vector<ShapeSensitivity> TrialShape::find_sensitivities() {
   std::vector<ShapeSensitivity> all;
   if (share_ < 1.0) return all;
-  Simulation::Impl& impl = *simulation_->impl_;
-  const geometry::LayeredGrid& grid = impl.model->geometry.grid;
-  const Eigen::Matrix3Xd skin = impl.skin_positions();
-  const double swept = coupling::compute_swept_volume(grid, grid.nodes, skin);
-  const auto add = [&](ShapeParameter parameter, const std::string& name,
-                       const std::optional<equilibrium::Sensitivity>& found) {
-    if (!found) return;
-    ShapeSensitivity sensitivity{parameter, name, Eigen::Matrix3Xd(3, skin.cols()), 0.0, {}};
-    for (Eigen::Index s = 0; s < skin.cols(); ++s) {
-      sensitivity.skin.col(s) = found->displacement.col(impl.stepper->tissue()->skin_nodes[static_cast<size_t>(s)]);
-    }
-    const double largest = sensitivity.skin.colwise().norm().maxCoeff();
-    if (largest > 0.0) {
-      const double h = kSweep / largest;
-      const double beside = coupling::compute_swept_volume(grid, grid.nodes, skin + h * sensitivity.skin);
-      sensitivity.skin_volume = (beside - swept) / h;
-    }
-    sensitivity.pool_pressure.assign(found->pool_head.begin(), found->pool_head.end());
-    all.push_back(std::move(sensitivity));
-  };
+  const Simulation::Impl& impl = *simulation_->impl_;
   equilibrium::Equilibrium& equilibrium = impl.direct->equilibrium();
   const auto by_volume = equilibrium.differentiate_by_volume();
-  for (size_t k = 0; k < by_volume.size(); ++k) add(ShapeParameter::kPoolVolume, pools_[k].zones, by_volume[k]);
+  for (size_t k = 0; k < by_volume.size(); ++k) {
+    if (by_volume[k]) all.push_back(describe(ShapeParameter::kPoolVolume, pools_[k].zones, *by_volume[k]));
+  }
   const auto by_modulus = equilibrium.differentiate_by_modulus();
   for (size_t k = 0; k < by_modulus.size(); ++k) {
-    add(ShapeParameter::kLayerModulus, impl.model->layers[k].name, by_modulus[k]);
+    if (by_modulus[k])
+      all.push_back(describe(ShapeParameter::kLayerModulus, impl.model->layers[k].name, *by_modulus[k]));
+  }
+  for (size_t k = 0; k < impl.model->layers.size(); ++k) {
+    const auto by_thickness = differentiate_by_thickness(static_cast<int>(k));
+    if (by_thickness)
+      all.push_back(describe(ShapeParameter::kLayerThickness, impl.model->layers[k].name, *by_thickness));
   }
   return all;
+}
+
+/// Beside the plan's tissue, one with the layer a little thicker.
+std::optional<equilibrium::Sensitivity> TrialShape::differentiate_by_thickness(int layer) {
+  Simulation::Impl& impl = *simulation_->impl_;
+  const auto model = model::make_thicker(*impl.model, layer, kThickening);
+  auto stepper = step::CoupledStep::create(*model, impl.films, impl.spec);
+  if (!stepper.ok()) return {};
+  auto beside = DirectShape::create(*model, impl.films, impl.spec, **stepper);
+  if (!beside.ok()) return {};
+  return impl.direct->equilibrium().differentiate_towards((*beside)->equilibrium(), kThickening);
+}
+
+/// A change of the shape as the skin shows it.
+ShapeSensitivity TrialShape::describe(ShapeParameter parameter, const std::string& name,
+                                      const equilibrium::Sensitivity& found) const {
+  const Simulation::Impl& impl = *simulation_->impl_;
+  const geometry::LayeredGrid& grid = impl.model->geometry.grid;
+  const Eigen::Matrix3Xd skin = impl.skin_positions();
+  ShapeSensitivity sensitivity{parameter, name, Eigen::Matrix3Xd(3, skin.cols()), 0.0, {}};
+  for (Eigen::Index s = 0; s < skin.cols(); ++s) {
+    sensitivity.skin.col(s) = found.displacement.col(impl.stepper->tissue()->skin_nodes[static_cast<size_t>(s)]);
+  }
+  const double largest = sensitivity.skin.colwise().norm().maxCoeff();
+  if (largest > 0.0) {
+    const double h = kSweep / largest;
+    const double before = coupling::compute_swept_volume(grid, grid.nodes, skin);
+    const double after = coupling::compute_swept_volume(grid, grid.nodes, skin + h * sensitivity.skin);
+    sensitivity.skin_volume = (after - before) / h;
+  }
+  sensitivity.pool_pressure.assign(found.pool_head.begin(), found.pool_head.end());
+  return sensitivity;
 }
 
 }  // namespace lipofill::simulation

@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/equilibrium/equilibrium.h"
 #include "core/mechanics/simulation_state.h"
 #include "core/simulation/simulation.h"
 
@@ -35,10 +37,10 @@ struct PoolReport {
   double head = 0.0;    ///< pressure at the origin of coordinates [Pa]
 };
 
-enum class ShapeParameter { kPoolVolume, kLayerModulus };
+enum class ShapeParameter { kPoolVolume, kLayerModulus, kLayerThickness };
 
 /// What one more unit of a parameter does to a shape, to first order: of a pool's volume [1/m3], or
-/// of the logarithm of a layer's Young's modulus [1].
+/// of the logarithm of a layer's Young's modulus or thickness [1].
 struct ShapeSensitivity {
   ShapeParameter parameter = ShapeParameter::kPoolVolume;
   std::string name;                   ///< of the pool, as PoolReport::zones, or of the layer
@@ -73,13 +75,16 @@ class TrialShape {
   const std::string& reason() const { return reason_; }
   bool is_from_rest() const { return is_from_rest_; }
   std::vector<PoolReport> pools() const { return pools_; }
-  /// Of each pool's volume, then of each layer's modulus; none where the share is below 1. A
-  /// parameter whose answer is not found is left out.
+  /// Of each pool's volume, then of each layer's modulus, then of each layer's thickness; none
+  /// where the share is below 1. A parameter whose answer is not found is left out.
   std::vector<ShapeSensitivity> find_sensitivities();
 
  private:
   explicit TrialShape(std::unique_ptr<Simulation> simulation);
   absl::StatusOr<plan::InjectionSchedule> schedule_with(const TrialVolumes& volumes) const;
+  std::optional<equilibrium::Sensitivity> differentiate_by_thickness(int layer);
+  ShapeSensitivity describe(ShapeParameter parameter, const std::string& name,
+                            const equilibrium::Sensitivity& found) const;
 
   std::unique_ptr<Simulation> simulation_;
   std::unique_ptr<const mechanics::SimulationState> rest_;  ///< that the plan begins with

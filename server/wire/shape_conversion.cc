@@ -14,12 +14,12 @@
 namespace lipofill::server {
 namespace {
 
-/// A sensitivity to a layer is told for so much more of its modulus.
-constexpr double kModulusShare = 0.01;
+/// A sensitivity to a layer is told for so much more of its modulus or thickness.
+constexpr double kLayerShare = 0.01;
 
 /// A unit of the parameter, as people count it, in that of the core.
 double unit_of(simulation::ShapeParameter parameter) {
-  return parameter == simulation::ShapeParameter::kPoolVolume ? kCubicMetresPerMillilitre : kModulusShare;
+  return parameter == simulation::ShapeParameter::kPoolVolume ? kCubicMetresPerMillilitre : kLayerShare;
 }
 
 SessionView view_of(const FoundTrial& found) {
@@ -38,11 +38,22 @@ SessionView view_of(const FoundTrial& found) {
   return view;
 }
 
+v1::ShapeSensitivity::Parameter to_parameter(simulation::ShapeParameter parameter) {
+  switch (parameter) {
+    case simulation::ShapeParameter::kPoolVolume:
+      return v1::ShapeSensitivity::POOL_VOLUME;
+    case simulation::ShapeParameter::kLayerModulus:
+      return v1::ShapeSensitivity::LAYER_STIFFNESS;
+    case simulation::ShapeParameter::kLayerThickness:
+      return v1::ShapeSensitivity::LAYER_THICKNESS;
+  }
+  return v1::ShapeSensitivity::PARAMETER_UNSPECIFIED;
+}
+
 void add_sensitivity(const simulation::ShapeSensitivity& from, v1::FoundShape& shape) {
   v1::ShapeSensitivity& to = *shape.add_sensitivities();
   const double unit = unit_of(from.parameter);
-  to.set_parameter(from.parameter == simulation::ShapeParameter::kPoolVolume ? v1::ShapeSensitivity::POOL_VOLUME
-                                                                             : v1::ShapeSensitivity::LAYER_STIFFNESS);
+  to.set_parameter(to_parameter(from.parameter));
   to.set_name(from.name);
   to.set_max_displacement_mm(unit * from.skin.colwise().norm().maxCoeff() * kMillimetresPerMetre);
   to.set_skin_volume_ml(unit * from.skin_volume / kCubicMetresPerMillilitre);

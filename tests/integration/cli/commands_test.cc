@@ -134,7 +134,7 @@ TEST_F(CommandsTest, FindsShapesAndGoesOnWithASettledSimulation) {
   const auto shape = ask("shape settled.json --sensitivities --volume 1=0.25 --model " + model);
   EXPECT_NEAR(shape["summary"]["injected_ml"].get<double>(), 0.25, 1e-9);
   EXPECT_EQ(shape["from_rest"], true);
-  EXPECT_EQ(shape["sensitivities"].size(), 2u) << "one pool, one layer";
+  EXPECT_EQ(shape["sensitivities"].size(), 3u) << "one pool, one layer by stiffness and by thickness";
   EXPECT_EQ(ask("simulation list")["simulations"].size(), 0u) << "nothing is kept";
   ask("simulation create settled.json --id s --start --model " + model);
   EXPECT_EQ(tell("watch s").exit_code, 0);

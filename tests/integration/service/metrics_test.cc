@@ -120,6 +120,27 @@ TEST_F(MetricsTest, SayWhatWasDone) {
   EXPECT_GT(values["process_cpu_seconds_total"], 0.0);
 }
 
+TEST_F(MetricsTest, CountShapes) {
+  v1::FindShapeRequest request;
+  *request.mutable_spec() = square_plan(model_.name(), 600.0);
+  request.set_drag("slider");
+  for (const double volume_ml : {0.04, 0.05, 1e4}) {
+    request.clear_injections();
+    request.add_injections()->set_volume_ml(volume_ml);
+    Context context;
+    const auto stream = simulations_->FindShape(&context, request);
+    v1::FindShapeResponse response;
+    while (stream->Read(&response)) continue;
+    EXPECT_EQ(stream->Finish().ok(), volume_ml < 1.0);
+  }
+  const auto values = values_of(scrape());
+  EXPECT_EQ(values.at("lipofill_shapes_found_total"), 2.0);
+  EXPECT_EQ(values.at("lipofill_shapes_refused_total"), 1.0);
+  EXPECT_EQ(values.at("lipofill_shapes_superseded_total"), 0.0);
+  EXPECT_EQ(values.at("lipofill_shape_wall_seconds_count"), 2.0);
+  EXPECT_EQ(values.at("lipofill_shape_drags"), 1.0);
+}
+
 TEST_F(MetricsTest, HaveAllThatTheDashboardAsksFor) {
   run_one();
   std::set<std::string> known;

@@ -132,7 +132,7 @@ TEST_F(ShapeTest, SensitivitiesSayWhatALittleMoreDoes) {
   wanted.set_with_sensitivities(true);
   const SeenShape seen = find(wanted);
   ASSERT_TRUE(seen.status.ok()) << seen.status.error_message();
-  ASSERT_EQ(seen.shape.sensitivities_size(), 3) << "one pool, two layers";
+  ASSERT_EQ(seen.shape.sensitivities_size(), 5) << "one pool, two layers by stiffness and by thickness";
   const v1::ShapeSensitivity& by_volume = seen.shape.sensitivities(0);
   EXPECT_EQ(by_volume.parameter(), v1::ShapeSensitivity::POOL_VOLUME);
   EXPECT_EQ(by_volume.name(), seen.shape.pools(0).zones());
@@ -143,7 +143,8 @@ TEST_F(ShapeTest, SensitivitiesSayWhatALittleMoreDoes) {
   EXPECT_EQ(seen.shape.sensitivities(1).parameter(), v1::ShapeSensitivity::LAYER_STIFFNESS);
   EXPECT_FALSE(seen.shape.sensitivities(1).name().empty());
   EXPECT_EQ(seen.bytes.at("skin.sensitivity/0").size(), seen.bytes.at("skin.displacement").size());
-  EXPECT_TRUE(seen.bytes.contains("skin.sensitivity/2"));
+  EXPECT_EQ(seen.shape.sensitivities(4).parameter(), v1::ShapeSensitivity::LAYER_THICKNESS);
+  EXPECT_TRUE(seen.bytes.contains("skin.sensitivity/4"));
 }
 
 TEST_F(ShapeTest, BeginsFromThePlanOfASimulationAsItIsNow) {

@@ -49,6 +49,14 @@ double largest_difference(const Simulation& a, const Simulation& b) {
   return largest;
 }
 
+/// Displacements of the skin [mm].
+std::vector<float> skin_of(const Simulation& simulation) {
+  for (const FrameField& field : simulation.frame({"skin"})) {
+    if (field.name == "displacement") return field.values;
+  }
+  return {};
+}
+
 TEST(TrialShape, FromRestItIsTheShapeOfThePlanBitForBit) {
   const auto trial = make_trial();
   ASSERT_TRUE(trial->find({{{0, 0.5 * kMillilitre}}, {}}, true).ok());
@@ -87,7 +95,7 @@ TEST(TrialShape, ItsSensitivitiesAreDifferencesOfShapes) {
   const auto trial = make_trial();
   ASSERT_TRUE(trial->find({}, false).ok());
   const auto sensitivities = trial->find_sensitivities();
-  ASSERT_EQ(sensitivities.size(), 1u + trial->shape().model().layers.size());
+  ASSERT_EQ(sensitivities.size(), 1u + 2 * trial->shape().model().layers.size());
   const ShapeSensitivity& by_volume = sensitivities[0];
   EXPECT_EQ(by_volume.parameter, ShapeParameter::kPoolVolume);
   EXPECT_EQ(by_volume.name, trial->pools()[0].zones);
@@ -101,6 +109,39 @@ TEST(TrialShape, ItsSensitivitiesAreDifferencesOfShapes) {
   EXPECT_EQ(by_modulus.parameter, ShapeParameter::kLayerModulus);
   EXPECT_EQ(by_modulus.name, trial->shape().model().layers[0].name);
   EXPECT_GT(by_modulus.pool_pressure[0], 0.0) << "stiffer tissue presses more";
+}
+
+/// Against shapes of plans on models that are built thicker and thinner.
+TEST(TrialShape, ItsSensitivitiesToThicknessAreDifferencesOfModels) {
+  const auto trial = make_trial();
+  ASSERT_TRUE(trial->find({}, false).ok());
+  const auto sensitivities = trial->find_sensitivities();
+  const size_t n_layers = trial->shape().model().layers.size();
+  for (size_t layer = 0; layer < n_layers; ++layer) {
+    SCOPED_TRACE(layer);
+    const ShapeSensitivity& found = sensitivities.at(1 + n_layers + layer);
+    EXPECT_EQ(found.parameter, ShapeParameter::kLayerThickness);
+    const double share = 0.02;
+    const auto run_with = [&](double change) {
+      model::FaceModelSpec spec = make_small_model_spec();
+      const double thickness = spec.layers[layer].geometry.thickness.values[0];
+      spec.layers[layer].geometry.thickness = geometry::ScalarField::constant(thickness * std::exp(change));
+      auto shape = TrialShape::create(*model::build_face_model(spec, nullptr), make_plan(0.3 * kMillilitre));
+      EXPECT_TRUE(shape.ok() && (*shape)->find({}, false).ok());
+      return *std::move(shape);
+    };
+    const auto thicker = run_with(share), thinner = run_with(-share);
+    const double pressure = (thicker->pools()[0].head - thinner->pools()[0].head) / (2.0 * share);
+    EXPECT_NEAR(found.pool_pressure[0], pressure, 0.02 * std::abs(pressure));
+    const std::vector<float> more = skin_of(thicker->shape()), less = skin_of(thinner->shape());
+    double largest = 0.0, off = 0.0;
+    for (Eigen::Index k = 0; k < found.skin.size(); ++k) {
+      const double expected = (more[static_cast<size_t>(k)] - less[static_cast<size_t>(k)]) / (2.0 * share);
+      largest = std::max(largest, std::abs(expected));
+      off = std::max(off, std::abs(1e3 * found.skin.reshaped()[k] - expected));
+    }
+    EXPECT_LT(off, 0.02 * largest);
+  }
 }
 
 std::vector<std::string> fields_of(const absl::Status& status) {

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
@@ -14,6 +15,7 @@ constexpr int kOpeningLoadSteps = 8;
 constexpr int kMaxOpeningIterations = 40;
 constexpr double kOpeningTolerance = 1e-8;
 constexpr double kIntermediateOpeningTolerance = 1e-3;
+constexpr int kMaxFillings = 40;
 /// Opening is quasi-static: inertia over this long a step only keeps S regular [s].
 constexpr double kOpeningStep = 1.0;
 constexpr int kMaxProducts = 300;
@@ -74,45 +76,66 @@ bool open_to(const Opening& opening, const Eigen::VectorXd& target, double toler
   return false;
 }
 
-/// Fills every film to its initial thickness. Returns the volumes of all cells [m3].
+/// Fills every film to its initial thickness over cells of the areas that the positions of `state`
+/// give them. Returns the volumes of all cells [m3].
 Eigen::VectorXd fill(const Opening& opening, mechanics::SimulationState& state) {
   const mechanics::FilmCells& cells = opening.cells;
   Eigen::VectorXd initial(cells.n());
   for (size_t f = 0; f < opening.films.size(); ++f) {
     const plan::FilmLayout& layout = opening.films[f];
-    const Eigen::VectorXd& area = opening.geometry.rest_area(f);
+    const Eigen::VectorXd area = opening.geometry.metric_at(f, state.positions).area;
     mechanics::FilmState& film = state.films[f];
     auto volume = initial.segment(cells.offset[f], cells.n_of(f));
-    const auto rest = opening.rest_volume.segment(cells.offset[f], cells.n_of(f));
     for (int cell = 0; cell < cells.n_of(f); ++cell) {
       const geometry::ChartPoint centre = layout.cell_centre(cell);
-      volume[cell] = area[cell] * layout.initial_thickness.at(centre.xi, centre.eta);
+      const double thickness = layout.initial_thickness.at(centre.xi, centre.eta);
+      volume[cell] = area[cell] * thickness;
+      if (film.is_entered.size() == 0) continue;
+      film.is_entered[cell] = static_cast<double>(thickness > layout.rest_thickness.at(centre.xi, centre.eta));
     }
     film.volume = volume;
-    for (Eigen::Index cell = 0; cell < film.is_entered.size(); ++cell) {
-      film.is_entered[cell] = static_cast<double>(volume[cell] > rest[cell]);
-    }
     if (layout.wall != plan::FilmWallKind::kWinkler) continue;
+    const auto rest = opening.rest_volume.segment(cells.offset[f], cells.n_of(f));
     film.pressure = layout.wall_stiffness * (film.volume - rest).cwiseQuotient(area);
   }
   return initial;
+}
+
+/// True when no cell's volume differs from another by more than the tolerance of its thickness.
+bool is_as_thick(const Eigen::VectorXd& volume, const Eigen::VectorXd& asked_for) {
+  return ((volume - asked_for).array().abs() <= kThicknessTolerance * asked_for.array().abs()).all();
+}
+
+absl::Status opens_too_far(double share) {
+  return field_violation(
+      "films", absl::StrCat("initial_thickness_mm opens the tissue further than it can go: no equilibrium at ",
+                            100.0 * share, " % of it"));
 }
 
 }  // namespace
 
 absl::Status open_to_initial_thickness(const Opening& opening, mechanics::SimulationState& state) {
   const mechanics::FilmCells& cells = opening.cells;
-  const Eigen::VectorXd initial = fill(opening, state);
+  Eigen::VectorXd volume = fill(opening, state);
   Eigen::VectorXd target;
-  cells.gather_tissue_part(initial - opening.rest_volume, target);
+  cells.gather_tissue_part(volume - opening.rest_volume, target);
   if (target.size() == 0 || target.cwiseAbs().maxCoeff() == 0.0) return absl::OkStatus();
   Eigen::VectorXd pressure;
   for (int load = 1; load <= kOpeningLoadSteps; ++load) {
-    const double tolerance = load == kOpeningLoadSteps ? kOpeningTolerance : kIntermediateOpeningTolerance;
-    if (open_to(opening, target * load / kOpeningLoadSteps, tolerance, state, pressure)) continue;
-    return field_violation(
-        "films", absl::StrCat("initial_thickness_mm opens the tissue further than it can go: no equilibrium at ",
-                              100 * load / kOpeningLoadSteps, " % of it"));
+    const double share = static_cast<double>(load) / kOpeningLoadSteps;
+    if (!open_to(opening, target * share, kIntermediateOpeningTolerance, state, pressure)) return opens_too_far(share);
+  }
+  // The walls have stretched: the same thickness is another volume now.
+  for (int filling = 0;; ++filling) {
+    if (filling == kMaxFillings) return opens_too_far(1.0);
+    cells.gather_tissue_part(volume - opening.rest_volume, target);
+    if (!open_to(opening, target, kOpeningTolerance, state, pressure)) return opens_too_far(1.0);
+    Eigen::VectorXd asked_for = fill(opening, state);
+    if (is_as_thick(volume, asked_for)) break;
+    volume = std::move(asked_for);
+  }
+  for (size_t f = 0; f < opening.films.size(); ++f) {
+    state.films[f].volume = volume.segment(cells.offset[f], cells.n_of(f));
   }
   for (size_t k = 0; k < cells.on_tissue.size(); ++k) {
     const int f = cells.film_of(cells.on_tissue[k]);

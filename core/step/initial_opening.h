@@ -20,9 +20,18 @@ struct Opening {
   ResidualForce* forces;
 };
 
-/// Fills the films to their initial thickness and finds the equilibrium with every cell on tissue
-/// holding its volume, by load stepping. INVALID_ARGUMENT with the field "films" when the tissue
-/// does not come to rest.
+/// A cell's thickness is its initial one to this share of it.
+inline constexpr double kThicknessTolerance = 1e-6;
+
+/// Fills the films to their initial thickness h0 and finds the equilibrium with every cell on
+/// tissue holding its volume, by load stepping:
+///
+///     V_i = a_i(x) h0_i     volume of cell i [m3], a_i its area on the mid-surface at the positions
+///                           x of that equilibrium [m2]
+///
+/// The areas start as those at rest and follow the walls as they stretch, until V_i / a_i(x) is
+/// h0_i in every cell to kThicknessTolerance. INVALID_ARGUMENT with the field "films" when the
+/// tissue does not come to rest. Checked by tests/unit/step/initial_opening_test.cc.
 absl::Status open_to_initial_thickness(const Opening& opening, mechanics::SimulationState& state);
 
 }  // namespace lipofill::step

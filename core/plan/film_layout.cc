@@ -1,10 +1,13 @@
 #include "core/plan/film_layout.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "core/base/field_violations.h"
 #include "core/base/units.h"
+#include "core/geometry/node_values.h"
 #include "core/plan/film_walls.h"
 #include "core/plan/zone_levels.h"
 #include "core/plan/zone_outline.h"
@@ -18,6 +21,8 @@ constexpr int kMaxFilmCells = 65536;
 constexpr int kHexahedraAcrossCell = 2;
 constexpr double kCoarsestRatio = 2.0;
 constexpr double kThickest_mm = 50.0;
+/// Less of a film over a base that gives is not worth a remark.
+constexpr double kLeastSoftShare = 0.01;
 
 void check_thickness(const geometry::ScalarField& field, const std::string& name, double lowest,
                      FieldViolations& violations) {
@@ -94,6 +99,31 @@ void remark_on_attachments(const model::FaceModel& model, const FilmSpec& spec, 
                                    assumed.stiffness / kPascalsPerMetrePerKilopascalPerMillimetre,
                                    " kPa/mm, which grows over ", assumed.width / kMetresPerMillimetre, " mm."));
   }
+}
+
+/// Says how much of a film on the base has soft tissue beneath it on the patient, and bone in the
+/// model.
+void remark_on_soft_base(const model::FaceModel& model, FilmLayout& layout) {
+  const geometry::LayeredGrid& grid = model.geometry.grid;
+  if (layout.level != grid.n_levels() - 1) return;
+  double soft = model.base.kind == model::SupportKind::kElastic ? 1.0 : 0.0;
+  if (model.base.kind == model::SupportKind::kByRegion) {
+    const geometry::ScalarField give = geometry::field_of_nodes(model.base_give, grid);
+    double covered = 0.0;
+    for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {
+      const geometry::ChartPoint centre = layout.cell_centre(cell);
+      const film::SlotCover& cover = layout.grid.cover[cell];
+      const double share = std::accumulate(cover.begin(), cover.end(), 0.0);
+      covered += share;
+      soft += share * static_cast<double>(give.at(centre.xi, centre.eta) > model::kLeastGive);
+    }
+    soft /= covered;
+  }
+  if (soft < kLeastSoftShare) return;
+  layout.remarks.push_back(absl::StrFormat(
+      "Film %s lies on the base, which gives under %.0f %% of it; a film on the base has bone beneath it in the model, "
+      "so that all its fat pushes outwards: put it below a layer further out where there is no bone.",
+      layout.name, 100.0 * soft));
 }
 
 /// The edges of whole cells as lines of the chart.
@@ -201,6 +231,7 @@ absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmS
   layout.rest_thickness = spec.rest_thickness;
   layout.connective_tissue = spec.connective_tissue;
   layout.initial_thickness = spec.initial_thickness.value_or(spec.rest_thickness);
+  if (spec.wall == FilmWallKind::kTissue) remark_on_soft_base(model, layout);
   return layout;
 }
 

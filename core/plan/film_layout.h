@@ -30,7 +30,7 @@ struct FilmLayout {
   std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< of each zone, on the chart
   std::vector<film::CellPiece> pieces;                       ///< on the quadrilaterals of the tissue, kTissue only
   ZoneBond bond;                                             ///< of the two walls, kTissue only
-  std::vector<std::string> remarks;                          ///< zones that lie on the film in part, a sentence each
+  std::vector<std::string> remarks;                          ///< what to know of its zones and base, a sentence each
 
   /// The slot of the film's grid over a place, -1 outside its extent; and the cell whose slot it
   /// is, -1: none.
@@ -45,8 +45,9 @@ FilmSpec with_cells(FilmSpec spec, const geometry::LayeredGrid& tissue);
 
 /// Decides which cells belong to which zone and where in the tissue the film lies. On a face a
 /// named region or a disc with less than 0.98 of its area on the film is remarked upon, and refused
-/// below 0.6. Field violations are named below "films[index]", values in the units of
-/// lipofill.v1.Film.
+/// below 0.6. A film on the base is remarked upon where that gives, since it has bone beneath it in
+/// the model (core/doc/decisions/026-base-by-region.md). Field violations are named below
+/// "films[index]", values in the units of lipofill.v1.Film.
 absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmSpec& spec);
 
 /// Positions on the undeformed skin over the vertices of a film's grid [m] (3, n_vertices).

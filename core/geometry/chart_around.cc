@@ -205,7 +205,8 @@ void remark_on_obstacles_within(const FlatPatch& patch, const Quadrilateral& qua
   std::map<std::string, int> within;
   for (size_t k = 0; k < patch.obstacles.size(); ++k) {
     const PlacedObstacle& obstacle = patch.obstacles[k];
-    if (!obstacle.may_cut && contains(quad, obstacle.flat)) within.try_emplace(obstacle.name, static_cast<int>(k));
+    if (!obstacle.may_cut && obstacle.name != kSharpBend && contains(quad, obstacle.flat))
+      within.try_emplace(obstacle.name, static_cast<int>(k));
   }
   for (const auto& [name, k] : within) {
     remarks.push_back(absl::StrCat("The model reaches over ", name, " near ", in_mm(patch.obstacles[k].position),

@@ -15,6 +15,9 @@ namespace lipofill::geometry {
 /// What ends at a vertex of the patch.
 enum class SkinBorder { kNone, kFold, kScanEnd };
 
+/// What an obstacle is called where layers fold under it.
+inline constexpr char kSharpBend[] = "a bend of the skin too sharp for the layers";
+
 /// A point that the model should keep clear of, and what is there ("the mouth").
 struct Obstacle {
   std::string name;

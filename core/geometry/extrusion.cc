@@ -74,7 +74,8 @@ WorstHexahedron extrude_along_smoothed_normals(const Eigen::MatrixXd& depth, con
 }  // namespace
 
 absl::StatusOr<LayeredGrid> extrude_layers(const Eigen::Matrix3Xd& skin, int n_xi, int n_eta,
-                                           const std::vector<LayerGeometry>& layers) {
+                                           const std::vector<LayerGeometry>& layers,
+                                           std::vector<Eigen::Vector3d>* folded) {
   LayeredGrid grid;
   grid.n_xi = n_xi;
   grid.n_eta = n_eta;
@@ -86,6 +87,7 @@ absl::StatusOr<LayeredGrid> extrude_layers(const Eigen::Matrix3Xd& skin, int n_x
   const WorstHexahedron worst = extrude_along_smoothed_normals(depth, compute_mean_spacing(n_xi, n_eta, skin), grid);
   grid.min_scaled_jacobian = worst.scaled_jacobian;
   if (worst.scaled_jacobian >= kSmallestScaledJacobian) return grid;
+  if (folded != nullptr) *folded = find_folded_places(grid, kSmallestScaledJacobian);
   return absl::FailedPreconditionError(
       absl::StrFormat("layers[%d] folds where the face curves: scaled Jacobian %.3f near (%.1f, %.1f, %.1f) mm, must "
                       "be at least %.1f; make the layers thinner there or take another region",

@@ -14,7 +14,9 @@ namespace lipofill::geometry {
 /// @param skin  (3, nodes_per_level), xi fastest; xi x eta points outwards [m]
 /// FAILED_PRECONDITION, naming the place [mm] and the layer, where the worst scaled Jacobian stays
 /// below 0.1.
+/// @param folded  out, where not null: the places of the skin over hexahedra that stay below it [m]
 absl::StatusOr<LayeredGrid> extrude_layers(const Eigen::Matrix3Xd& skin, int n_xi, int n_eta,
-                                           const std::vector<LayerGeometry>& layers);
+                                           const std::vector<LayerGeometry>& layers,
+                                           std::vector<Eigen::Vector3d>* folded = nullptr);
 
 }  // namespace lipofill::geometry

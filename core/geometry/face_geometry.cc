@@ -103,12 +103,13 @@ std::vector<LayerGeometry> complete_layers(std::vector<LayerGeometry> layers, co
 }
 
 absl::StatusOr<LayeredGrid> lay_on(const Eigen::Matrix3Xd& skin, const GridSize& size,
-                                   const std::vector<LayerGeometry>& given) {
+                                   const std::vector<LayerGeometry>& given,
+                                   std::vector<Eigen::Vector3d>* folded = nullptr) {
   const std::vector<LayerGeometry> layers = complete_layers(given, skin, size);
   FieldViolations violations;
   check_count(size, layers, violations);
   if (!violations.empty()) return violations.to_status();
-  return extrude_layers(skin, size.n_xi, size.n_eta, layers);
+  return extrude_layers(skin, size.n_xi, size.n_eta, layers, folded);
 }
 
 absl::StatusOr<FaceGeometry> build_square(const SquareSpec& square, const FaceGeometrySpec& spec) {
@@ -231,7 +232,8 @@ absl::Status check_face_geometry(const FaceGeometrySpec& spec) {
   return violations.to_status();
 }
 
-absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& geometry) {
+absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& geometry,
+                        std::vector<Eigen::Vector3d>* folded) {
   FaceGeometrySpec spec;
   spec.n_xi = geometry.grid.n_xi;
   spec.n_eta = geometry.grid.n_eta;
@@ -239,7 +241,8 @@ absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& 
   FieldViolations violations;
   check_layers(spec, violations);
   if (!violations.empty()) return violations.to_status();
-  auto grid = lay_on(geometry.grid.nodes.leftCols(geometry.grid.nodes_per_level()), {spec.n_xi, spec.n_eta}, layers);
+  auto grid =
+      lay_on(geometry.grid.nodes.leftCols(geometry.grid.nodes_per_level()), {spec.n_xi, spec.n_eta}, layers, folded);
   if (!grid.ok()) return grid.status();
   geometry.grid = *std::move(grid);
   return absl::OkStatus();

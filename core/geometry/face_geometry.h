@@ -51,6 +51,8 @@ struct ScanRegionSpec {
   /// In place of corners, where there are any: the region is a rectangle around them.
   std::vector<Footprint> footprints;
   double margin = 0.0;  ///< of skin around the footprints, wanted on every side [m]
+  /// The margin keeps clear of these places of the skin: layers fold there [m].
+  std::vector<Eigen::Vector3d> sharp_bends;
 };
 
 struct LayerGeometry {
@@ -114,7 +116,9 @@ absl::Status check_face_geometry(const FaceGeometrySpec& spec);
 
 /// Lays layers under the skin of a geometry in place of those it has, as build_face_geometry does.
 /// FAILED_PRECONDITION where they fold, and INVALID_ARGUMENT as check_layers.
-absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& geometry);
+/// @param folded  out, where not null: the places of the skin under which they fold [m]
+absl::Status lay_layers(const std::vector<LayerGeometry>& layers, FaceGeometry& geometry,
+                        std::vector<Eigen::Vector3d>* folded = nullptr);
 
 /// The chart place of a skin point: the nearest on the skin, or for a point given by landmarks that
 /// lies deeper than 10 mm the one along the outward normal. INVALID_ARGUMENT (field violation "")

@@ -50,10 +50,10 @@ double compute_edge_agreement(const Eigen::Matrix<double, 3, 8>& x) {
   return smallest;
 }
 
-}  // namespace
-
-WorstHexahedron find_worst_hexahedron(const LayeredGrid& grid) {
-  WorstHexahedron worst;
+/// Calls visit(level, i, j, quality, nodes) for every hexahedron; one turned over against its outer
+/// face has the cosine that tells so for its quality.
+template <typename Visit>
+void visit_hexahedra(const LayeredGrid& grid, const Visit& visit) {
   for (int level = 0; level + 1 < grid.n_levels(); ++level) {
     for (int j = 0; j < grid.n_eta; ++j) {
       for (int i = 0; i < grid.n_xi; ++i) {
@@ -66,13 +66,30 @@ WorstHexahedron find_worst_hexahedron(const LayeredGrid& grid) {
           x.col(4 * face + 3) = grid.nodes.col(grid.node(at, i, j + 1));
         }
         const double agreement = compute_edge_agreement(x);
-        const double quality = agreement > 0.0 ? compute_scaled_jacobian(x) : agreement;
-        if (quality >= worst.scaled_jacobian) continue;
-        worst = {quality, level, x.rowwise().mean()};
+        visit(level, i, j, agreement > 0.0 ? compute_scaled_jacobian(x) : agreement, x);
       }
     }
   }
+}
+
+}  // namespace
+
+WorstHexahedron find_worst_hexahedron(const LayeredGrid& grid) {
+  WorstHexahedron worst;
+  visit_hexahedra(grid, [&](int level, int, int, double quality, const Eigen::Matrix<double, 3, 8>& x) {
+    if (quality < worst.scaled_jacobian) worst = {quality, level, x.rowwise().mean()};
+  });
   return worst;
+}
+
+std::vector<Eigen::Vector3d> find_folded_places(const LayeredGrid& grid, double least) {
+  std::vector<Eigen::Vector3d> places;
+  visit_hexahedra(grid, [&](int, int i, int j, double quality, const Eigen::Matrix<double, 3, 8>&) {
+    if (quality >= least) return;
+    places.push_back(0.25 * (grid.nodes.col(grid.node(0, i, j)) + grid.nodes.col(grid.node(0, i + 1, j)) +
+                             grid.nodes.col(grid.node(0, i + 1, j + 1)) + grid.nodes.col(grid.node(0, i, j + 1))));
+  });
+  return places;
 }
 
 }  // namespace lipofill::geometry

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "core/geometry/layered_grid.h"
 
@@ -23,5 +24,9 @@ struct WorstHexahedron {
 };
 
 WorstHexahedron find_worst_hexahedron(const LayeredGrid& grid);
+
+/// Middles of the quadrilaterals of the skin [m] under which a hexahedron has a scaled Jacobian
+/// below `least`, by levels and then along xi. Checked by tests/unit/geometry/chart_test.cc.
+std::vector<Eigen::Vector3d> find_folded_places(const LayeredGrid& grid, double least);
 
 }  // namespace lipofill::geometry

@@ -85,6 +85,7 @@ absl::StatusOr<RegionPatch> find_patch_around(const ScanRegionSpec& spec, const 
   request.margin = spec.margin;
   request.up = axes.up;
   request.obstacles = find_face_obstacles(spec.landmarks, axes);
+  for (const Eigen::Vector3d& bend : spec.sharp_bends) request.obstacles.push_back({kSharpBend, bend});
   const Ball ball = find_ball(request.footprints, request.margin);
   const double radius = kPatchSpare * ball.radius + kPatchSpareLength;
   const SubSurface skin = extract_outer_skin(mesh, {ball.centre, radius + kDeepestUnderSkin});

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "core/anatomy/base_give.h"
 #include "core/base/field_violations.h"
 #include "core/base/hash.h"
@@ -19,6 +20,8 @@ namespace {
 
 /// Share of the building work that comes before the layers.
 constexpr double kSkinFraction = 0.9;
+/// Layers that fold are tried with less margin this often.
+constexpr int kMostTrials = 6;
 
 void check_layer(const TissueLayerSpec& layer, const std::string& field, FieldViolations& violations) {
   violations.check_range(absl::StrCat(field, ".youngs_modulus_kpa"),
@@ -109,7 +112,8 @@ std::string compute_content_hash(const FaceModel& model) {
   return hasher.hex_digest();
 }
 
-absl::StatusOr<geometry::FaceGeometrySpec> make_geometry_spec(const FaceModelSpec& spec) {
+absl::StatusOr<geometry::FaceGeometrySpec> make_geometry_spec(const FaceModelSpec& spec,
+                                                              const std::vector<Eigen::Vector3d>& sharp_bends) {
   geometry::FaceGeometrySpec geometry_spec;
   geometry_spec.region = spec.region;
   if (spec.around) {
@@ -118,6 +122,7 @@ absl::StatusOr<geometry::FaceGeometrySpec> make_geometry_spec(const FaceModelSpe
     if (!footprints.ok()) return footprints.status();
     scan.footprints = *std::move(footprints);
     scan.margin = spec.around->margin;
+    scan.sharp_bends = sharp_bends;
   }
   geometry_spec.n_xi = spec.n_xi;
   geometry_spec.n_eta = spec.n_eta;
@@ -133,8 +138,10 @@ absl::StatusOr<geometry::FaceGeometrySpec> make_geometry_spec(const FaceModelSpe
 
 /// The charted skin, without the layers: their thickness depends on where they lie. Everything
 /// wrong with the layers is told before the scan is worked on.
-absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec, const geometry::Progress& progress) {
-  auto geometry_spec = make_geometry_spec(spec);
+absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec,
+                                                  const std::vector<Eigen::Vector3d>& sharp_bends,
+                                                  const geometry::Progress& progress) {
+  auto geometry_spec = make_geometry_spec(spec, sharp_bends);
   if (!geometry_spec.ok()) return geometry_spec.status();
   if (const absl::Status valid = geometry::check_face_geometry(*geometry_spec); !valid.ok()) return valid;
   geometry_spec->layers.clear();
@@ -147,7 +154,7 @@ absl::StatusOr<geometry::FaceGeometry> build_skin(const FaceModelSpec& spec, con
 /// change. Over a rough scan the roughness is the first cause to look at; a thickness that follows
 /// the bone has two more parameters.
 absl::Status with_advice(const absl::Status& status, const geometry::FaceGeometry& face,
-                         const LayerThickness& thickness) {
+                         const LayerThickness& thickness, const std::optional<AroundSpec>& around) {
   if (!absl::IsFailedPrecondition(status)) return status;
   std::string text(status.message());
   if (face.rms_rider_distance > geometry::kRoughScan) {
@@ -157,7 +164,43 @@ absl::Status with_advice(const absl::Status& status, const geometry::FaceGeometr
         face.rms_rider_distance * kMillimetresPerMetre, face.max_rider_distance * kMillimetresPerMetre, text);
   }
   if (thickness.bone) text += "; or raise smoothing_mm or lower max_thickness_mm of the layer down to the bone";
+  if (around && !around->regions.empty()) {
+    absl::StrAppend(&text, "; the place lies within or beside ", absl::StrJoin(around->regions, ", "),
+                    ", where its landmarks put it, and cannot be left out of the model");
+  }
   return absl::FailedPreconditionError(text);
+}
+
+/// A face with its layers, and the thickness they came to.
+struct LayeredFace {
+  geometry::FaceGeometry geometry;
+  LayerThickness thickness;
+};
+
+/// Lays the layers under the charted skin. Where they fold beside what the model goes around, the
+/// skin is charted anew with less margin there.
+absl::StatusOr<LayeredFace> build_layered_face(const FaceModelSpec& spec, const geometry::Progress& progress) {
+  std::vector<Eigen::Vector3d> sharp_bends;
+  for (int trial = 0;; ++trial) {
+    auto face = build_skin(spec, sharp_bends, trial == 0 ? progress : nullptr);
+    if (!face.ok()) return face.status();
+    if (progress && !progress(kSkinFraction, "laying the layers"))
+      return absl::CancelledError("building was cancelled");
+    auto thickness = find_layer_thickness(*face, spec);
+    if (!thickness.ok()) return thickness.status();
+    std::vector<geometry::LayerGeometry> layers;
+    for (size_t l = 0; l < spec.layers.size(); ++l) {
+      layers.push_back({thickness->fields[l], spec.layers[l].geometry.elements_through});
+    }
+    std::vector<Eigen::Vector3d> folded;
+    const absl::Status laid = geometry::lay_layers(layers, *face, &folded);
+    if (laid.ok()) return LayeredFace{*std::move(face), *std::move(thickness)};
+    const bool is_known = std::all_of(folded.begin(), folded.end(), [&](const Eigen::Vector3d& place) {
+      return std::find(sharp_bends.begin(), sharp_bends.end(), place) != sharp_bends.end();
+    });
+    if (!spec.around || is_known || trial == kMostTrials) return with_advice(laid, *face, *thickness, spec.around);
+    sharp_bends.insert(sharp_bends.end(), folded.begin(), folded.end());
+  }
 }
 
 /// Everything wrong with what the region is to hold is told before the scan is worked on.
@@ -222,28 +265,19 @@ absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceMode
   model->is_square = std::holds_alternative<geometry::SquareSpec>(spec.region);
   if (const absl::Status status = check_face_model(spec); !status.ok()) return status;
 
-  auto face = build_skin(spec, progress);
+  auto face = build_layered_face(spec, progress);
   if (!face.ok()) return face.status();
-  if (progress && !progress(kSkinFraction, "laying the layers")) return absl::CancelledError("building was cancelled");
-  auto thickness = find_layer_thickness(*face, spec);
-  if (!thickness.ok()) return thickness.status();
-  std::vector<geometry::LayerGeometry> layers;
-  for (size_t l = 0; l < spec.layers.size(); ++l) {
-    layers.push_back({thickness->fields[l], spec.layers[l].geometry.elements_through});
-  }
-  if (const absl::Status laid = geometry::lay_layers(layers, *face); !laid.ok()) {
-    return with_advice(laid, *face, *thickness);
-  }
+  LayerThickness& thickness = face->thickness;
 
-  model->geometry = *std::move(face);
+  model->geometry = std::move(face->geometry);
   model->layers = spec.layers;
-  for (size_t l = 0; l < layers.size(); ++l) {
-    model->layers[l].geometry = {std::move(layers[l].thickness), model->geometry.grid.elements_through[l]};
+  for (size_t l = 0; l < spec.layers.size(); ++l) {
+    model->layers[l].geometry = {std::move(thickness.fields[l]), model->geometry.grid.elements_through[l]};
   }
-  model->thickness = std::move(thickness->ranges);
-  model->bone = thickness->bone;
+  model->thickness = std::move(thickness.ranges);
+  model->bone = thickness.bone;
   model->rim = spec.rim;
-  lay_base(spec, *thickness, *model);
+  lay_base(spec, thickness, *model);
   model->content_hash = compute_content_hash(*model);
   if (progress && !progress(1.0, "done")) return absl::CancelledError("building was cancelled");
   return std::shared_ptr<const FaceModel>(std::move(model));

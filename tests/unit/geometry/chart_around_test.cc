@@ -102,6 +102,17 @@ TEST(ChartAround, AnObstacleWithinTheZoneStaysAndIsSaid) {
   EXPECT_THAT(around->remarks, ElementsAre(HasSubstr("reaches over the eye")));
 }
 
+TEST(ChartAround, KeepsClearOfSharpBendsWhereItCan) {
+  const RegionPatch patch = make_patch();
+  ChartAroundRequest request = make_request(patch, make_footprint(0.0, 0.0));
+  request.obstacles = {{kSharpBend, {0.020, 0.0, 0.0}}, {kSharpBend, {0.005, 0.0, 0.0}}};
+  const auto around = chart_around(patch, request, 20, 16);
+  ASSERT_TRUE(around.ok()) << around.status();
+  EXPECT_NEAR(around->corners[1].x(), 0.018, kSampling);
+  EXPECT_THAT(around->remarks, ElementsAre(HasSubstr("in place of 12.0: a bend of the skin too sharp")))
+      << "one within the zone is no news where layers can be laid";
+}
+
 TEST(ClearRectangle, TheSideThatKeepsMostMarginMoves) {
   const Rectangle box{{-1.0, -1.0}, {1.0, 1.0}};
   const auto clear = find_clear_rectangle(box, 1.0, {{{1.9, 1.5}, 0.1, true}}, {});

@@ -211,6 +211,19 @@ TEST(Extrusion, RefusesLayersThickerThanTheCurvatureAllows) {
   EXPECT_THAT(std::string(grid.status().message()), HasSubstr(" mm"));
 }
 
+TEST(Extrusion, TellsUnderWhichPlacesOfTheSkinLayersFold) {
+  const int n = 16;
+  const SurfaceMesh cap = make_sphere_cap(0.010, 1.6, n);
+  std::vector<Eigen::Vector3d> folded;
+  ASSERT_TRUE(extrude_layers(cap.points, n, n, {{ScalarField::constant(0.0005), 1}}, &folded).ok());
+  EXPECT_TRUE(folded.empty());
+  ASSERT_FALSE(extrude_layers(cap.points, n, n, {{ScalarField::constant(0.030), 1}}, &folded).ok());
+  ASSERT_FALSE(folded.empty());
+  for (const Eigen::Vector3d& place : folded) {
+    EXPECT_LT((cap.points.colwise() - place).colwise().norm().minCoeff(), 1.5e-3) << "it lies on the skin";
+  }
+}
+
 TEST(HexQuality, KnowsACuboidASkewOneAndAFoldedOne) {
   Eigen::Matrix<double, 3, 8> x;
   x << 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 2, 2, 0, 0, 2, 2, 0, 0, 0, 0, 3, 3, 3, 3;

@@ -15,6 +15,26 @@ constexpr double kLargeVolumeLoss = 0.02;  // of the tissue
 constexpr double kSmallRest = 0.01;        // of the lift
 constexpr double kPascalsPerMmhg = 133.322;
 
+/// Says why a plan that ended after its injections is not at rest: too early, or because the skin
+/// goes to and fro, as over stiff deep planes.
+void remark_on_unrest(const StepReport& report, plan::TimeGoal goal, std::vector<std::string>& remarks) {
+  const double left = report.settling_error;
+  if (std::isfinite(left)) {
+    if (left <= kSmallRest * report.skin_max_displacement) return;
+    remarks.push_back(
+        absl::StrFormat("The skin has some %.3f mm still to go at the end, %.1f %% of its lift: raise end_s.",
+                        left * kMillimetresPerMetre, 100.0 * left / report.skin_max_displacement));
+    return;
+  }
+  remarks.push_back(absl::StrFormat(
+      "The skin does not come to rest: at the end its speed, %.3g mm/s, has risen again, as where it goes to and fro "
+      "over a stiff plane; %s.",
+      report.skin_speed * kMillimetresPerMetre,
+      goal == plan::TimeGoal::kSettledShape
+          ? "Summary.way says what keeps its settled shape from being solved for directly"
+          : "time.goal SETTLED_SHAPE solves for its settled shape in place of stepping to it"));
+}
+
 }  // namespace
 
 /// The remarks on the shape it ended in.
@@ -32,6 +52,9 @@ void Simulation::Impl::remark_on_result(std::vector<std::string>& remarks) const
         absl::StrFormat("The skin is slow enough to count as at rest and has some %.3f mm still to go, "
                         "%.1f %% of its lift: lower settle_skin_speed_mm_per_s to go on.",
                         report.settling_error * kMillimetresPerMetre, 100.0 * report.settling_error / lift));
+  }
+  if (phase == Phase::kFinished && spec.settle_skin_speed > 0.0 && state.time >= schedule.end()) {
+    remark_on_unrest(report, spec.goal, remarks);
   }
   if (stepper->tissue() == nullptr) return;
   if (report.min_scaled_jacobian < kPoorScaledJacobian) {

@@ -23,10 +23,20 @@ export interface Listener {
   connection(state: "live" | "lost"): void;
 }
 
+/** What of a simulation has been seen. */
+export interface Seen {
+  epoch: bigint;
+  sequence: bigint;
+  /** the meshes that are here; empty: none */
+  topology: string;
+}
+
 export interface WatchOptions {
   simulation: string;
   fields: string[];
   maxRateHz: number;
+  /** goes on from there: a simulation that had ended may go on */
+  seen?: Seen;
   signal: AbortSignal;
 }
 
@@ -70,7 +80,13 @@ class Progress {
   constructor(
     private readonly options: WatchOptions,
     private readonly listener: Listener,
-  ) {}
+  ) {
+    Object.assign(this, options.seen);
+  }
+
+  get seen(): Seen {
+    return { epoch: this.epoch, sequence: this.sequence, topology: this.topology };
+  }
 
   request() {
     const { simulation, fields, maxRateHz } = this.options;
@@ -132,10 +148,10 @@ class Progress {
 const pause = (ms: number): Promise<void> => new Promise((resolve) => setTimeout(resolve, ms));
 
 /**
- * Returns after the last frame, or when `signal` aborts.
+ * Returns after the last frame, or when `signal` aborts, what has been seen.
  * @throws ConnectError for anything but a lost connection
  */
-export async function watch(options: WatchOptions, listener: Listener): Promise<void> {
+export async function watch(options: WatchOptions, listener: Listener): Promise<Seen> {
   const progress = new Progress(options, listener);
   for (let failures = 0; !progress.ended && !options.signal.aborted; ) {
     const silence = new SilenceWatch(options.signal);
@@ -147,11 +163,11 @@ export async function watch(options: WatchOptions, listener: Listener): Promise<
         listener.connection("live");
         progress.take(response);
       }
-      if (progress.ended) return;
+      if (progress.ended) return progress.seen;
     } catch (error) {
       const code = ConnectError.from(error).code;
       const silenced = code === Code.Canceled || code === Code.Aborted;
-      if (options.signal.aborted) return;
+      if (options.signal.aborted) return progress.seen;
       if (!silenced && !isLost(error)) throw error;
     } finally {
       silence.end();
@@ -159,4 +175,5 @@ export async function watch(options: WatchOptions, listener: Listener): Promise<
     listener.connection("lost");
     await pause(Math.min(longestPauseMs, 250 * 2 ** failures++));
   }
+  return progress.seen;
 }

@@ -6,8 +6,8 @@ import { Simulation_State, type Injection, type SeriesRow, type Simulation } fro
 import { attempt, tell } from "../activity";
 import { newId, patients, simulations } from "../api/client";
 import { toProblem } from "../api/errors";
-import { watch, type Listener } from "../api/watch";
-import { simulationSpec } from "../plan/actions";
+import { watch, type Listener, type Seen } from "../api/watch";
+import { build, simulationSpec } from "../plan/actions";
 import { modelIsCurrent, plan, violations } from "../plan/state";
 import { toPlanFields } from "../plan/violations";
 import { axesOf } from "../plan/landmarks";
@@ -20,6 +20,7 @@ import {
   isUnderWay,
   lookedAt,
   meshes,
+  readableMs,
   recorded,
   refusals,
   rows,
@@ -32,14 +33,12 @@ import {
 } from "./state";
 
 let leave = new AbortController();
+/** of the simulation that is shown, once its frames have ended */
+let seen: Seen | undefined;
+let following = Promise.resolve();
 const pollMs = 400;
 const mostRows = 20_000;
 
-/**
- * Figures that change more often than this cannot be read, and drawing them takes what the face
- * needs.
- */
-const readableMs = 200;
 let figuresDue: ReturnType<typeof setTimeout> | undefined;
 
 function showTime(atOnce: boolean): void {
@@ -71,6 +70,7 @@ const listener: Listener = {
 export function close(): void {
   leave.abort();
   leave = new AbortController();
+  seen = undefined;
   store.clear();
   batch(() => {
     [simulation.value, frame.value, meshes.value, lookedAt.value, recorded.value] = [
@@ -91,8 +91,8 @@ async function follow(name: string, face: string): Promise<void> {
   const fields = ["displacement", "pressure", "thickness"].map((field) => `${face}.${field}`);
   void poll(name, left);
   try {
-    await watch({ simulation: name, fields, maxRateHz: 60, signal: left }, listener);
-    if (!left.aborted) connection.value = "idle";
+    const until = await watch({ simulation: name, fields, maxRateHz: 60, seen, signal: left }, listener);
+    if (!left.aborted) [seen, connection.value] = [until, "idle"];
   } catch (error) {
     const wrongField =
       ConnectError.from(error).code === Code.InvalidArgument || ConnectError.from(error).code === Code.NotFound;
@@ -137,7 +137,7 @@ function thinRows(all: SeriesRow[]): SeriesRow[] {
 export function open(next: Simulation, face = "scan"): void {
   close();
   simulation.value = next;
-  void follow(next.name, face);
+  following = follow(next.name, face);
 }
 
 /** Shows one that this page has not begun, upright as its model says. */
@@ -188,16 +188,28 @@ export async function command(which: Command): Promise<void> {
   }
 }
 
+/** A simulation that has settled goes on with the injection, and is followed again. */
 export async function inject(injection: Injection): Promise<boolean> {
   refusals.value = [];
+  const { name } = simulation.value!;
+  const over = !isUnderWay.value;
+  const { signal: left } = leave;
   try {
-    simulation.value = await simulations.inject({ name: simulation.value!.name, injection, requestId: newId() });
+    const now = await simulations.inject({ name, injection, requestId: newId() });
+    if (left.aborted) return true;
+    simulation.value = now;
+    if (over) following = following.then(() => (left.aborted ? undefined : follow(name, faceMesh.value)));
     return true;
   } catch (error) {
     refusals.value = toProblem(error).violations;
     tell(error);
     return false;
   }
+}
+
+/** Runs the plan of the page. */
+export async function run(): Promise<void> {
+  if (await build()) await create(true);
 }
 
 /** Runs the plan, or goes on with what is under way. */

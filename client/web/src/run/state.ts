@@ -18,6 +18,11 @@ export const frame = signal<Frame | undefined>(undefined);
 export const lookedAt = signal<number | undefined>(undefined);
 /** of the frame that is shown, for figures: no faster than they can be read */
 export const timeShown = signal<number | undefined>(undefined);
+/**
+ * Figures that change more often than this cannot be read, and drawing them takes what the face
+ * needs.
+ */
+export const readableMs = 200;
 export const skipped = signal(0);
 export const store = new FrameStore();
 /** "scan" or, without one, "skin" */

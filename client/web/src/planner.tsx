@@ -6,6 +6,7 @@ import { bindPlanCheck } from "./plan/check";
 import { modelIsCurrent, scan, violations, zones } from "./plan/state";
 import { tool } from "./plan/tools";
 import { connection, distance, hasResult } from "./run/state";
+import { bindShape } from "./shape/plan_volumes";
 import { FacePanel } from "./panels/face_panel";
 import { FatPanel } from "./panels/fat_panel";
 import { Figures } from "./panels/figures";
@@ -84,6 +85,7 @@ export function Planner() {
   useEffect(() => {
     const ends = [
       bindPlanCheck(() => step.value === "fat"),
+      bindShape(),
       effect(() => {
         if (distance.value === undefined && quantity.peek() === "distance") quantity.value = "displacement";
       }),

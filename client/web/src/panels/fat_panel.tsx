@@ -3,10 +3,11 @@ import { create } from "@bufbuild/protobuf";
 import { FatPreset, FatSchema, LigamentSchema, Pace, TimeControl_Goal, TimeControlSchema } from "@wire/simulation_pb";
 import { ligamentNames, readable } from "../plan/anatomy";
 import { remarks } from "../plan/check";
-import { freeName, newFilm, newInjection } from "../plan/new_plan";
-import { editPlan, modelIsCurrent, plan, region, zones } from "../plan/state";
+import { freeName, newFilm } from "../plan/new_plan";
+import { editPlan, modelIsCurrent, plan, region } from "../plan/state";
 import { tool } from "../plan/tools";
 import { CheckField, Complaint, NumberField, Section, SelectField } from "../widgets/fields";
+import { Injections } from "./injections";
 import { FilmEditor } from "./zone_list";
 
 function Planes() {
@@ -40,86 +41,6 @@ function Planes() {
       >
         Add a plane
       </button>
-    </Section>
-  );
-}
-
-function Injections() {
-  const injections = plan.value.simulation?.injections ?? [];
-  const names = zones.value.map(({ zone }) => zone.name);
-  const total = injections.reduce((sum, { volumeMl }) => sum + (volumeMl ?? 0), 0);
-  return (
-    <Section title="Injections" aside={<b class="total">{total.toFixed(1)} mL</b>}>
-      {injections.map((injection, index) => {
-        const at = `simulation.injections[${index}]`;
-        const placing = tool.value.kind === "site" && tool.value.index === index;
-        return (
-          <fieldset class="injection" key={index}>
-            <legend>Injection {index + 1}</legend>
-            <SelectField
-              label="Into"
-              value={injection.zone}
-              field={`${at}.zone`}
-              options={names.map((name) => ({ value: name, label: readable(name) }))}
-              onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].zone = value))}
-            />
-            <div class="pair">
-              <NumberField
-                label="Volume"
-                unit="mL"
-                step={0.1}
-                value={injection.volumeMl}
-                field={`${at}.volume_ml`}
-                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].volumeMl = value))}
-              />
-              <NumberField
-                label="Rate"
-                unit="mL/s"
-                step={0.1}
-                value={injection.rateMlPerS}
-                field={`${at}.rate_ml_per_s`}
-                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].rateMlPerS = value))}
-              />
-            </div>
-            <div class="row">
-              <button
-                type="button"
-                class="button small"
-                aria-pressed={placing}
-                onClick={() => (tool.value = placing ? { kind: "turn" } : { kind: "site", index })}
-              >
-                {injection.site ? "Move the point" : "Place the point"}
-              </button>
-              {injection.site && (
-                <button
-                  type="button"
-                  class="link"
-                  onClick={() => editPlan(({ simulation }) => (simulation!.injections[index].site = undefined))}
-                >
-                  Evenly over the zone
-                </button>
-              )}
-              <button
-                type="button"
-                class="link"
-                onClick={() => editPlan(({ simulation }) => void simulation!.injections.splice(index, 1))}
-              >
-                Remove
-              </button>
-            </div>
-            <Complaint field={`${at}.site`} />
-          </fieldset>
-        );
-      })}
-      <button
-        type="button"
-        class="button wide"
-        disabled={names.length === 0}
-        onClick={() => editPlan(({ simulation }) => void simulation!.injections.push(newInjection(names[0])))}
-      >
-        Add an injection
-      </button>
-      {names.length === 0 && <p class="hint">Add a zone first.</p>}
     </Section>
   );
 }

@@ -6,22 +6,18 @@ import { InjectionSchema, Simulation_State } from "@wire/simulation_pb";
 import { simulations } from "../api/client";
 import { uploadScan } from "../api/upload";
 import { readable } from "../plan/anatomy";
-import { build } from "../plan/actions";
 import { canRun, scanFile } from "../plan/state";
 import { attempt, busy } from "../activity";
 import { liveSite, tool } from "../plan/tools";
 import { stateClass, stateWord } from "../run/exports";
-import { close, command, create as createSimulation, inject } from "../run/run";
+import { close, command, inject, run } from "../run/run";
 import { distance, hasResult, isRunning, isUnderWay, recorded, simulation, state } from "../run/state";
 import { FileButton, NumberField, Section, SelectField } from "../widgets/fields";
 import { quantity } from "../stage/stage_state";
+import { AddedFat } from "./added_fat";
 import { Exports, Recorded } from "./take_home";
 
 const more = signal({ zone: "", volumeMl: 0.5 as number | undefined, rateMlPerS: 1 as number | undefined });
-
-async function run(): Promise<void> {
-  if (await build()) await createSimulation(true);
-}
 
 function Controls() {
   const now = state.value;
@@ -198,6 +194,7 @@ export function RunPanel() {
     <>
       <Controls />
       {isUnderWay.value && <InjectMore />}
+      {state.value === Simulation_State.SETTLED && !recorded.value && <AddedFat />}
       {hasResult.value && !recorded.value && <Target />}
       <Exports />
       <Recorded />

@@ -10,6 +10,7 @@ import { openExisting } from "../run/run";
 import { hasResult, rows, simulation } from "../run/state";
 import { writeSeries } from "../run/series_csv";
 import { FileButton, Section, SelectField } from "../widgets/fields";
+import { shownShapeOf } from "../shape/state";
 import { shownScene } from "../stage/stage_state";
 
 export function Exports() {
@@ -48,7 +49,12 @@ export function Exports() {
         <button type="button" class="button" onClick={() => void savePicture()}>
           Picture
         </button>
-        <button type="button" class="button" disabled={!hasResult.value} onClick={saveMesh}>
+        <button
+          type="button"
+          class="button"
+          disabled={!hasResult.value || shownShapeOf.value !== undefined}
+          onClick={saveMesh}
+        >
           Mesh
         </button>
       </div>

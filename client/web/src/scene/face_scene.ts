@@ -27,6 +27,7 @@ export class FaceScene {
   private face: Surface | undefined;
   private faceMesh: Mesh | undefined;
   private patch: Surface | undefined;
+  private patchShown = true;
   private layers: Surface[] = [];
   private readonly reader = new FrameReader();
   private readonly running = new RunningMap();
@@ -75,9 +76,17 @@ export class FaceScene {
       this.patch = new Surface(skin);
       this.patch.lift(0.35);
       this.patch.opacity = 0.82;
+      this.patch.visible = this.patchShown;
       this.viewport.add(this.patch.actor);
       this.colourPatch(colour);
     }
+    this.viewport.request();
+  }
+
+  /** Whether the region's skin lies over the face: where the face has moved it would hide it. */
+  showPatch(shown: boolean): void {
+    this.patchShown = shown;
+    if (this.patch) this.patch.visible = shown && this.layers.length === 0;
     this.viewport.request();
   }
 
@@ -101,7 +110,7 @@ export class FaceScene {
       this.viewport.add(layer.actor);
     });
     if (this.face) this.face.opacity = this.layers.length > 0 ? 0.18 : 1;
-    if (this.patch) this.patch.visible = this.layers.length === 0;
+    if (this.patch) this.patch.visible = this.patchShown && this.layers.length === 0;
     this.viewport.request();
   }
 

@@ -1,7 +1,9 @@
 // How many different frames become pictures, and fewer pixels where a machine is too slow to show
 // them all.
-import { frame, store } from "../run/state";
+import { store } from "../run/state";
 import type { FaceScene } from "../scene/face_scene";
+import { isFinal, shownShapeOf } from "../shape/state";
+import { shownFrame } from "./shown";
 import { rate } from "./stage_state";
 
 const lookEveryMs = 500;
@@ -11,11 +13,13 @@ const coarse = 0.5;
 
 /** @param element  tells the count as data-pictures */
 export function countPictures(scene: FaceScene, element: HTMLElement): () => void {
-  let [shown, last, total, since] = [0, frame.value, 0, performance.now()];
+  let [shown, last, total, since] = [0, shownFrame.value, 0, performance.now()];
   let arrivedBefore = store.arrived;
+  // Shapes are asked for one after the other: what drawing takes, they wait for.
+  const following = (): boolean => shownShapeOf.value !== undefined && !isFinal.value;
   scene.viewport.onRendered = () => {
-    if (frame.value === last || frame.value === undefined) return;
-    last = frame.value;
+    if (shownFrame.value === last || shownFrame.value === undefined) return;
+    last = shownFrame.value;
     shown += 1;
     element.dataset.pictures = String((total += 1));
   };
@@ -23,8 +27,11 @@ export function countPictures(scene: FaceScene, element: HTMLElement): () => voi
     const now = performance.now();
     rate.value = (1000 * shown) / (now - since);
     const came = (1000 * (store.arrived - arrivedBefore)) / (now - since);
-    if (came === 0) scene.viewport.detail = 1;
-    else if (rate.value < fluent && came > 1.3 * rate.value) scene.viewport.detail = coarse;
+    const slow = rate.value < fluent;
+    if (following()) {
+      if (shown > 0 && slow) scene.viewport.detail = coarse;
+    } else if (came === 0) scene.viewport.detail = 1;
+    else if (slow && came > 1.3 * rate.value) scene.viewport.detail = coarse;
     [shown, since, arrivedBefore] = [0, now, store.arrived];
   }, lookEveryMs);
   return () => clearInterval(timer);

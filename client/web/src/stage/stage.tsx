@@ -3,12 +3,13 @@ import { effect } from "@preact/signals";
 import { countPictures } from "./picture_rate";
 import { useEffect, useRef } from "preact/hooks";
 import { brushMm, tool, toolHint } from "../plan/tools";
-import { hasFrame, meshes } from "../run/state";
 import { FaceScene } from "../scene/face_scene";
 import { bindFace, bindFrame, bindMarkers, bindPatch } from "./stage_bindings";
 import { useCursor } from "./stage_cursor";
 import { compare, map, probe, quantity, shownScene, split } from "./stage_state";
 import { ScalarBar } from "./scalar_bar";
+import { ShapeReadout } from "./shape_readout";
+import { showsFrame } from "./shown";
 import { ViewTools } from "./view_tools";
 
 function Probe() {
@@ -109,10 +110,11 @@ export function Stage() {
           </button>
         </div>
       )}
-      {quantity.value !== "none" && map.value && meshes.value && hasFrame.value && (
+      {quantity.value !== "none" && map.value && showsFrame.value && (
         <ScalarBar map={map.value} quantity={quantity.value} />
       )}
       <Probe />
+      <ShapeReadout />
       <ViewTools />
     </div>
   );

@@ -1,29 +1,28 @@
 // Keeps the scene as the plan and the run have it.
-import { effect, untracked } from "@preact/signals";
+import { effect, signal, untracked } from "@preact/signals";
 import { placedZones, zoneUnderSkin } from "../plan/check";
 import { locate, pointOf } from "../plan/landmarks";
 import { chart, model, modelMeshes, plan, region, scanMesh, zones } from "../plan/state";
 import { liveSite, tool } from "../plan/tools";
-import { distance, faceMesh, frame, meshes, simulation } from "../run/state";
+import { distance, frame, meshes, simulation } from "../run/state";
+import { isFinal, shownShapeOf } from "../shape/state";
 import { zoneColours, type Rgb } from "../scene/colour_maps";
 import type { FaceScene } from "../scene/face_scene";
 import type { Ball, Line } from "../scene/markers";
-import { distanceOf, type Point } from "../scene/surface_geometry";
+import type { Point } from "../scene/surface_geometry";
 import { layerShown, showLayers } from "../panels/tissue_panel";
+import { shownFrame, shownMesh, showsPlanShape } from "./shown";
 import { quantity, step } from "./stage_state";
 import { lookAtFace, lookAtLift, lookAtRegion } from "./view_tools";
 
 type End = () => void;
 
-/** The face is the run's where there is one, else the scan, else the skin of a plate. */
 export function bindFace(scene: FaceScene): End {
   return effect(() => {
-    const running = meshes.value?.get(faceMesh.value);
-    const plate = plan.value.model?.geometry.case === "square" ? modelMeshes.value?.get("skin") : undefined;
-    const mesh = running ?? scanMesh.value ?? plate;
+    const mesh = shownMesh.value;
     const first = !scene.hasFace;
     scene.setFace(mesh);
-    if (first && mesh) untracked(() => (chart.value || running ? lookAtRegion() : lookAtFace("front")));
+    if (first && mesh) untracked(() => (chart.value || meshes.value ? lookAtRegion() : lookAtFace("front")));
   });
 }
 
@@ -53,6 +52,7 @@ export function bindPatch(scene: FaceScene): End {
       if (skin) lookedAt = skin;
     });
   });
+  const cover = effect(() => scene.showPatch(!showsPlanShape.value));
   const colours = effect(() => {
     void [zoneUnderSkin.value, zones.value];
     scene.colourPatch(zoneColour);
@@ -65,20 +65,36 @@ export function bindPatch(scene: FaceScene): End {
       layerShown.value,
     );
   });
-  return () => [patch, colours, layers].forEach((end) => end());
+  return () => [patch, cover, colours, layers].forEach((end) => end());
 }
 
-/** The vertex of the face nearest to a place: marks lie on the skin, not beside it. */
-function onSkin(scene: FaceScene, at: Point | undefined): Point | undefined {
-  const points = scene.points;
-  if (at === undefined || points === undefined) return at;
-  let [best, least] = [at, Infinity];
-  for (let k = 0; k < points.length; k += 3) {
-    const vertex: Point = [points[k], points[k + 1], points[k + 2]];
-    const d = distanceOf(vertex, at);
-    if (d < least) [best, least] = [vertex, d];
+/** Counts the shapes that marks have to go along with, and their ends. */
+const carried = signal(0);
+
+/** The vertex of the face at rest that is nearest to a place. */
+function nearestVertex(rest: ArrayLike<number>, at: Point): number {
+  let [best, least] = [0, Infinity];
+  for (let k = 0; k < rest.length; k += 3) {
+    const d = (rest[k] - at[0]) ** 2 + (rest[k + 1] - at[1]) ** 2 + (rest[k + 2] - at[2]) ** 2;
+    if (d < least) [best, least] = [k, d];
   }
   return best;
+}
+
+/** Marks lie on the skin, not beside it. */
+function onSkin(scene: FaceScene, at: Point | undefined): Point | undefined {
+  const [rest, points] = [scene.mesh?.points, scene.points];
+  if (at === undefined || rest === undefined || points === undefined) return at;
+  const k = nearestVertex(rest, at);
+  return [points[k], points[k + 1], points[k + 2]];
+}
+
+/** A place on the undeformed skin goes as far as the skin does. */
+function withSkin(scene: FaceScene, at: Point): Point {
+  const [rest, points] = [scene.mesh?.points, scene.points];
+  if (!showsPlanShape.peek() || rest === undefined || points === undefined) return at;
+  const k = nearestVertex(rest, at);
+  return [0, 1, 2].map((c) => at[c] + points[k + c] - rest[k + c]) as Point;
 }
 
 const colour: Record<"landmark" | "active" | "corner" | "site" | "ligament" | "wall", Rgb> = {
@@ -92,7 +108,8 @@ const colour: Record<"landmark" | "active" | "corner" | "site" | "ligament" | "w
 
 export function bindMarkers(scene: FaceScene): End {
   return effect(() => {
-    void scanMesh.value;
+    void [scanMesh.value, carried.value];
+    const underHand = showsPlanShape.value && !isFinal.value;
     const points = region.value?.landmarksMm ?? {};
     const place = (at: Parameters<typeof locate>[0]): Point | undefined =>
       onSkin(
@@ -118,9 +135,9 @@ export function bindMarkers(scene: FaceScene): End {
       for (const { site } of injections) if (site) add(place(site), "site");
       if (liveSite.value) add(place(liveSite.value), "active");
       if (step.value === "fat") {
-        for (const { number, outline } of placedZones.value)
+        for (const { number, outline } of underHand ? [] : placedZones.value)
           for (const { pointsMm } of outline) {
-            const around = pointsMm.map(pointOf);
+            const around = pointsMm.map((point) => withSkin(scene, pointOf(point)));
             lines.push({ points: [...around, around[0]], colour: zoneColours[(number - 1) % zoneColours.length] });
           }
         for (const ligament of ligaments)
@@ -144,19 +161,23 @@ export function bindMarkers(scene: FaceScene): End {
 export function bindFrame(scene: FaceScene): End {
   let due = 0;
   let lookedAt: unknown;
+  let shape: unknown;
   const show = (): void => {
     due = 0;
-    scene.show(frame.value, quantity.value);
+    scene.show(shownFrame.value, quantity.value);
+    const still = showsPlanShape.value && isFinal.value ? shownFrame.value : undefined;
+    if (still !== shape) carried.value += 1;
+    shape = still;
     // A run that this page has not begun is shown from where it moves most.
     const own = model.peek() !== undefined && simulation.peek()?.spec?.model === model.peek()!.name;
-    if (frame.value && scene.mesh !== lookedAt && !own && scene.lift > 0.2) {
+    if (frame.value && !shownShapeOf.value && scene.mesh !== lookedAt && !own && scene.lift > 0.2) {
       lookedAt = scene.mesh;
       lookAtLift();
     }
     scene.viewport.render(); // in this refresh, not the next
   };
   const end = effect(() => {
-    void [frame.value, quantity.value, meshes.value];
+    void [shownFrame.value, quantity.value, shownMesh.value];
     if (distance.value) scene.setDistance(distance.value.vertices, distance.value.distanceMm);
     if (due === 0) due = requestAnimationFrame(show);
   });

@@ -3,7 +3,7 @@
 import type { RefObject } from "preact";
 import { useEffect } from "preact/hooks";
 import { click, dab, tool } from "../plan/tools";
-import { frame } from "../run/state";
+import { shownFrame } from "./shown";
 import { probe, shownScene } from "./stage_state";
 
 /** A press that moved further was a turn of the face. */
@@ -39,7 +39,7 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
         paint(event);
         return;
       }
-      if (event.buttons !== 0 || frame.value === undefined) return;
+      if (event.buttons !== 0 || shownFrame.value === undefined) return;
       if (!(event.target as HTMLElement).closest(".view")) return leave();
       const { clientX, clientY } = event;
       cancelAnimationFrame(due);

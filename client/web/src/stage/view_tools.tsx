@@ -1,8 +1,10 @@
 // Buttons on the picture: where to look from, what is coloured, before and after.
 import { axesOf } from "../plan/landmarks";
 import { chart, modelMeshes, plan, region } from "../plan/state";
-import { distance, hasFrame, hasResult, runAxes } from "../run/state";
+import { distance, hasResult, runAxes } from "../run/state";
+import { shownShapeOf } from "../shape/state";
 import { faceView, regionView, type View } from "../scene/views";
+import { showsFrame } from "./shown";
 import { compare, quantity, shownScene, step, type Compare } from "./stage_state";
 import { Segmented } from "../widgets/fields";
 import type { Quantity } from "../scene/colour_maps";
@@ -56,7 +58,7 @@ export function ViewTools() {
           </button>
         )}
       </div>
-      {hasFrame.value && step.value === "run" && (
+      {showsFrame.value && (step.value === "run" || shownShapeOf.value) && (
         <Segmented
           label="Colour by"
           value={quantity.value}

@@ -1,0 +1,111 @@
+// What goes into the zones: how much of it under sliders, how fast, and where.
+import type { Injection } from "@wire/simulation_pb";
+import { readable } from "../plan/anatomy";
+import { newInjection } from "../plan/new_plan";
+import { editPlan, plan, zones } from "../plan/state";
+import { tool } from "../plan/tools";
+import { dragVolume, mostOf, releaseVolume } from "../shape/plan_volumes";
+import { dragged } from "../shape/state";
+import { Complaint, NumberField, Section, SelectField } from "../widgets/fields";
+import { VolumeSlider } from "../widgets/volume_slider";
+
+/** As it is under the hand, else as the plan has it. */
+const volumeOf = (injection: Injection, index: number): number | undefined =>
+  dragged.value.get(index) ?? injection.volumeMl;
+
+/** Its end is that of the volume before the drag. */
+function Slider({ injection, index }: { injection: Injection; index: number }) {
+  const planned = injection.volumeMl ?? 0;
+  const most = mostOf(planned);
+  return (
+    <VolumeSlider
+      label={`Volume of injection ${index + 1}, ${readable(injection.zone)}`}
+      value={volumeOf(injection, index) ?? 0}
+      min={planned < 0 ? -most : 0}
+      max={most}
+      onDrag={(volumeMl) => dragVolume(index, volumeMl)}
+      onRelease={(volumeMl) => releaseVolume(index, volumeMl)}
+    />
+  );
+}
+
+export function Injections() {
+  const injections = plan.value.simulation?.injections ?? [];
+  const names = zones.value.map(({ zone }) => zone.name);
+  const total = injections.reduce((sum, injection, index) => sum + (volumeOf(injection, index) ?? 0), 0);
+  return (
+    <Section title="Injections" aside={<b class="total">{total.toFixed(1)} mL</b>}>
+      {injections.map((injection, index) => {
+        const at = `simulation.injections[${index}]`;
+        const placing = tool.value.kind === "site" && tool.value.index === index;
+        return (
+          <fieldset class="injection" key={index}>
+            <legend>Injection {index + 1}</legend>
+            <SelectField
+              label="Into"
+              value={injection.zone}
+              field={`${at}.zone`}
+              options={names.map((name) => ({ value: name, label: readable(name) }))}
+              onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].zone = value))}
+            />
+            <div class="pair">
+              <NumberField
+                label="Volume"
+                unit="mL"
+                step={0.1}
+                value={volumeOf(injection, index)}
+                field={`${at}.volume_ml`}
+                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].volumeMl = value))}
+              />
+              <NumberField
+                label="Rate"
+                unit="mL/s"
+                step={0.1}
+                value={injection.rateMlPerS}
+                field={`${at}.rate_ml_per_s`}
+                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].rateMlPerS = value))}
+              />
+            </div>
+            <Slider injection={injection} index={index} />
+            <div class="row">
+              <button
+                type="button"
+                class="button small"
+                aria-pressed={placing}
+                onClick={() => (tool.value = placing ? { kind: "turn" } : { kind: "site", index })}
+              >
+                {injection.site ? "Move the point" : "Place the point"}
+              </button>
+              {injection.site && (
+                <button
+                  type="button"
+                  class="link"
+                  onClick={() => editPlan(({ simulation }) => (simulation!.injections[index].site = undefined))}
+                >
+                  Evenly over the zone
+                </button>
+              )}
+              <button
+                type="button"
+                class="link"
+                onClick={() => editPlan(({ simulation }) => void simulation!.injections.splice(index, 1))}
+              >
+                Remove
+              </button>
+            </div>
+            <Complaint field={`${at}.site`} />
+          </fieldset>
+        );
+      })}
+      <button
+        type="button"
+        class="button wide"
+        disabled={names.length === 0}
+        onClick={() => editPlan(({ simulation }) => void simulation!.injections.push(newInjection(names[0])))}
+      >
+        Add an injection
+      </button>
+      {names.length === 0 && <p class="hint">Add a zone first.</p>}
+    </Section>
+  );
+}

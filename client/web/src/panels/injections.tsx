@@ -13,8 +13,27 @@ import { VolumeSlider } from "../widgets/volume_slider";
 const volumeOf = (injection: Injection, index: number): number | undefined =>
   dragged.value.get(index) ?? injection.volumeMl;
 
+interface OfInjection {
+  injection: Injection;
+  index: number;
+}
+
+/** Alone, as the slider: only they are drawn again while it is dragged. */
+function Volume({ injection, index }: OfInjection) {
+  return (
+    <NumberField
+      label="Volume"
+      unit="mL"
+      step={0.1}
+      value={volumeOf(injection, index)}
+      field={`simulation.injections[${index}].volume_ml`}
+      onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].volumeMl = value))}
+    />
+  );
+}
+
 /** Its end is that of the volume before the drag. */
-function Slider({ injection, index }: { injection: Injection; index: number }) {
+function Slider({ injection, index }: OfInjection) {
   const planned = injection.volumeMl ?? 0;
   const most = mostOf(planned);
   return (
@@ -29,12 +48,17 @@ function Slider({ injection, index }: { injection: Injection; index: number }) {
   );
 }
 
+function Total() {
+  const injections = plan.value.simulation?.injections ?? [];
+  const total = injections.reduce((sum, injection, index) => sum + (volumeOf(injection, index) ?? 0), 0);
+  return <b class="total">{total.toFixed(1)} mL</b>;
+}
+
 export function Injections() {
   const injections = plan.value.simulation?.injections ?? [];
   const names = zones.value.map(({ zone }) => zone.name);
-  const total = injections.reduce((sum, injection, index) => sum + (volumeOf(injection, index) ?? 0), 0);
   return (
-    <Section title="Injections" aside={<b class="total">{total.toFixed(1)} mL</b>}>
+    <Section title="Injections" aside={<Total />}>
       {injections.map((injection, index) => {
         const at = `simulation.injections[${index}]`;
         const placing = tool.value.kind === "site" && tool.value.index === index;
@@ -49,14 +73,7 @@ export function Injections() {
               onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].zone = value))}
             />
             <div class="pair">
-              <NumberField
-                label="Volume"
-                unit="mL"
-                step={0.1}
-                value={volumeOf(injection, index)}
-                field={`${at}.volume_ml`}
-                onChange={(value) => editPlan(({ simulation }) => (simulation!.injections[index].volumeMl = value))}
-              />
+              <Volume injection={injection} index={index} />
               <NumberField
                 label="Rate"
                 unit="mL/s"

@@ -2,12 +2,12 @@
 // plan.
 import { batch, computed, effect, untracked } from "@preact/signals";
 import { clone, toJsonString } from "@bufbuild/protobuf";
-import { SimulationSpecSchema, type SimulationSpec } from "@wire/simulation_pb";
+import { Simulation_State, SimulationSpecSchema, type SimulationSpec } from "@wire/simulation_pb";
 import { newId } from "../api/client";
 import type { ShapeRequest } from "../api/find_shape";
 import { simulationSpec } from "../plan/actions";
 import { editPlan, modelIsCurrent, plan } from "../plan/state";
-import { recorded, simulation } from "../run/state";
+import { recorded, simulation, state } from "../run/state";
 import { beginDrag, findFinal, findWhileDragged, forgetShape } from "./finder";
 import { dragged, shapeOf } from "./state";
 
@@ -73,7 +73,7 @@ export function releaseVolume(index: number, volumeMl: number): void {
   });
 }
 
-/** Forgets a shape that is no longer that of the plan, or that a run takes the place of. */
+/** Forgets a shape that is no longer that of the plan or the run, or that a run replaces. */
 export function bindShape(): () => void {
   const run = computed(() => `${simulation.value?.name ?? ""} ${recorded.value}`);
   const ends = [
@@ -85,6 +85,9 @@ export function bindShape(): () => void {
     effect(() => {
       void run.value;
       untracked(forgetShape);
+    }),
+    effect(() => {
+      if (state.value !== Simulation_State.SETTLED && shapeOf.peek() === "run") untracked(forgetShape);
     }),
   ];
   return () => ends.forEach((end) => end());

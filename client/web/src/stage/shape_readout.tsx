@@ -118,7 +118,9 @@ export function ShapeReadout() {
   if (of === undefined || (found === undefined && refusal.value === "")) return null;
   return (
     <section class="shape-readout" aria-label="Shape of these volumes" tabIndex={0}>
-      <h3 role="status">{refusal.value !== "" ? "No shape to show" : isFinal.value ? titles[of] : "Settling…"}</h3>
+      <h3 role="status">
+        {refusal.value !== "" ? "No shape to show" : isFinal.value ? titles[of] : "Finding the settled shape…"}
+      </h3>
       {refusal.value !== "" && <p class="warning">{refusal.value}</p>}
       {found && <Numbers found={found} of={of} />}
       {found && isFinal.value && <Remarks found={found} of={of} />}

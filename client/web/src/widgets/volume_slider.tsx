@@ -34,7 +34,8 @@ export function VolumeSlider({ label, value, min, max, onDrag, onRelease }: Prop
       }}
       onChange={(event) => release(event.currentTarget)}
       // A thumb that is let go where it was taken up has not changed.
-      onLostPointerCapture={(event) => release(event.currentTarget)}
+      onPointerUp={(event) => release(event.currentTarget)}
+      onPointerCancel={(event) => release(event.currentTarget)}
       onBlur={(event) => release(event.currentTarget)}
     />
   );

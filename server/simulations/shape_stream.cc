@@ -7,6 +7,7 @@
 #include "server/entry/unary.h"
 #include "server/store/record_names.h"
 #include "server/wire/names.h"
+#include "server/wire/request_key.h"
 #include "server/wire/shape_conversion.h"
 #include "server/wire/simulation_conversion.h"
 #include "server/wire/violation_prefix.h"
@@ -78,7 +79,7 @@ absl::StatusOr<ShapeRequest> read_request(Backend& backend, grpc::CallbackServer
   auto spec = read_plan(backend, request);
   if (!spec.ok()) return spec.status();
   ShapeRequest order;
-  order.plan = spec->SerializeAsString();
+  order.plan = serialize_in_order(*spec);
   order.make = [&backend, spec = *std::move(spec)] { return make_trial(backend, spec); };
   order.volumes = *std::move(volumes);
   order.from_last = !request.from_rest();

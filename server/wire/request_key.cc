@@ -7,18 +7,21 @@
 
 namespace lipofill::server {
 
+std::string serialize_in_order(const google::protobuf::Message& message) {
+  std::string bytes;
+  google::protobuf::io::StringOutputStream sink(&bytes);
+  google::protobuf::io::CodedOutputStream out(&sink);
+  out.SetSerializationDeterministic(true);
+  message.SerializeToCodedStream(&out);
+  out.Trim();
+  return bytes;
+}
+
 RequestKey make_request_key(const Principal& caller, const std::string& method, const std::string& request_id,
                             const google::protobuf::Message& request) {
   if (request_id.empty()) return {method, "", "", caller.scope.tenant};
-  std::string bytes;
-  {
-    google::protobuf::io::StringOutputStream sink(&bytes);
-    google::protobuf::io::CodedOutputStream out(&sink);
-    out.SetSerializationDeterministic(true);
-    request.SerializeToCodedStream(&out);
-  }
   Hasher hasher;
-  hasher.add(bytes);
+  hasher.add(serialize_in_order(request));
   return {method, request_id, hasher.hex_digest(), caller.scope.tenant};
 }
 

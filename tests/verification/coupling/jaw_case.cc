@@ -21,6 +21,7 @@ JawPlan load_sample_plan(const std::string& file) {
   EXPECT_TRUE(plan.ok()) << plan.status();
   if (!plan.ok()) return {};
   EXPECT_TRUE(client::load_plan_landmarks(&*plan).ok());
+  client::take_region_from_zones(&plan->plan);
   // What the daemon would have put there: the scan and the model are passed on as they are.
   plan->plan.mutable_simulation()->set_model("patients/jaw/models/face");
   geometry::SurfaceMesh face;

@@ -1,5 +1,6 @@
 #include "core/geometry/surface_distance.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -153,7 +153,7 @@ TEST_F(CommandsTest, FindsShapesAndGoesOnWithASettledSimulation) {
   EXPECT_EQ(tell("shape settled.json").exit_code, 2) << "no model";
   EXPECT_EQ(tell("shape simulations/s --add middle").exit_code, 2);
   EXPECT_EQ(tell("shape simulations/s --volume 0=1").exit_code, 2);
-  EXPECT_THAT(tell("shape simulations/s --add nose=1").output, HasSubstr("nose"));
+  EXPECT_THAT(tell("shape simulations/s --add nose=1").errors, HasSubstr("nose"));
   EXPECT_EQ(tell("shape simulations/none").exit_code, 4);
 }
 

@@ -121,8 +121,9 @@ TEST_F(MetricsTest, SayWhatWasDone) {
 }
 
 TEST_F(MetricsTest, CountShapes) {
+  create_patient();
   v1::FindShapeRequest request;
-  *request.mutable_spec() = square_plan(model_.name(), 600.0);
+  *request.mutable_spec() = square_plan(build_square().name(), 600.0);
   request.set_drag("slider");
   for (const double volume_ml : {0.04, 0.05, 1e4}) {
     request.clear_injections();

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include "client/cpp/errors.h"
+
 namespace lipofill::client {
 namespace {
 
@@ -46,7 +48,10 @@ TEST(Requirement, SaysWhatThereIs) {
     EXPECT_TRUE(absl::IsInvalidArgument(read_requirements({text}).status())) << text;
   }
   const auto unknown = read_requirements({"p95<=2"});
-  EXPECT_THAT(std::string(unknown.status().message()), HasSubstr("simulated_to_target.p95_mm"));
+  const auto violations = error_details_of(unknown.status()).violations;
+  ASSERT_EQ(violations.size(), 1u);
+  EXPECT_EQ(violations[0].field, "--require");
+  EXPECT_THAT(violations[0].description, HasSubstr("simulated_to_target.p95_mm"));
 }
 
 }  // namespace

@@ -57,6 +57,9 @@ absl::StatusOr<std::unique_ptr<TrialShape>> TrialShape::create(std::shared_ptr<c
   auto simulation = Simulation::create(std::move(model), std::move(spec));
   if (!simulation.ok()) return simulation.status();
   Simulation::Impl& impl = *(*simulation)->impl_;
+  // When a run of the plan would end does not matter to a shape at rest.
+  impl.spec.settle_skin_speed = std::max(impl.spec.settle_skin_speed, std::numeric_limits<double>::min());
+  impl.spec.end = std::numeric_limits<double>::infinity();
   const auto hindrance = DirectShape::find_hindrance(*impl.model, impl.films, impl.spec, {}, impl.state, *impl.stepper);
   if (hindrance) return has_to_be_stepped(hindrance->text());
   if (const absl::Status made = impl.make_direct(); !made.ok()) return made;

@@ -178,10 +178,14 @@ TEST(TrialShape, RefusesAPlanThatHasToBeStepped) {
 TEST(TrialShape, TakesTransientPlans) {
   plan::SimulationSpec spec = make_plan(0.3 * kMillilitre);
   spec.goal = plan::TimeGoal::kTransient;
+  spec.settle_skin_speed = 0.0;  // it runs to its end, which comes before more could be injected
+  spec.end = 0.31;
   auto trial = TrialShape::create(make_small_model(), spec);
   ASSERT_TRUE(trial.ok()) << trial.status();
   ASSERT_TRUE((*trial)->find({}, false).ok());
   EXPECT_LT(largest_difference((*trial)->shape(), *run(0.3 * kMillilitre)), 1e-9);
+  ASSERT_TRUE((*trial)->find({{{0, 0.5 * kMillilitre}}, {}}, false).ok());
+  EXPECT_LT(largest_difference((*trial)->shape(), *run(0.5 * kMillilitre)), 1e-9);
 }
 
 }  // namespace

@@ -207,6 +207,17 @@ describe("a run", () => {
     expect(await figure("Skin rises")).toBeGreaterThan(1);
   });
 
+  it("has the daemon's refusal beside the field", async () => {
+    const more = page.locator(".section", { hasText: "Inject more" });
+    await more.getByLabel("Rate").fill("-1");
+    await more.getByLabel("Rate").press("Tab");
+    await button("Inject").click();
+    await more.locator(".complaint").waitFor();
+    await button("Dismiss").click();
+    await more.getByLabel("Rate").fill("1");
+    await more.getByLabel("Rate").press("Tab");
+  });
+
   it("takes more fat while it is paused, and goes on", async () => {
     const injected = await figure("Injected");
     const more = page.locator(".section", { hasText: "Inject more" });
@@ -219,17 +230,6 @@ describe("a run", () => {
       injected + 0.2,
       { timeout: 30_000 },
     );
-  });
-
-  it("has the daemon's refusal beside the field", async () => {
-    const more = page.locator(".section", { hasText: "Inject more" });
-    await more.getByLabel("Rate").fill("-1");
-    await more.getByLabel("Rate").press("Tab");
-    await button("Inject").click();
-    await more.locator(".complaint").waitFor();
-    await button("Dismiss").click();
-    await more.getByLabel("Rate").fill("1");
-    await more.getByLabel("Rate").press("Tab");
   });
 
   it("shows pressure in its bands, and the probe says what is under the cursor", async () => {

@@ -50,7 +50,7 @@ def main():
         print("readelf is not installed")
         return 77
     compiled = "--skip-compiled" not in sys.argv
-    programs = [argument for argument in sys.argv[1:] if argument != "--skip-compiled"]
+    programs = [argument for argument in sys.argv[1:] if argument not in ("", "--skip-compiled")]
     found = [f"{program}: {fault}" for program in programs for fault in faults_of(program, compiled)]
     print("\n".join(found) or f"{len(programs)} programs are built as they should be")
     return 1 if found else 0

@@ -14,7 +14,8 @@ from lipofill.v1 import (
 
 FILES = (frame_service_pb2, operation_service_pb2, patient_service_pb2, simulation_service_pb2)
 # Streams have their own way to go on; a replacement made twice could undo another's between.
-NOT_REPEATED = {"UploadScan", "Watch", "DownloadModelMesh", "DownloadScanMesh", "ExportTissueDeck", "FindShape", "UpdatePatient"}
+STREAMS = {"UploadScan", "Watch", "DownloadModelMesh", "DownloadScanMesh", "ExportTissueDeck", "FindShape"}
+NOT_REPEATED = {*STREAMS, "UpdatePatient"}
 
 
 def methods():

@@ -11,7 +11,7 @@
 namespace lipofill::server {
 
 /// What FindShape asks for, but for the plan. Field violations named as in FindShapeRequest.
-/// Checked by tests/unit/server/wire/shape_conversion_test.cc.
+/// Checked by tests/integration/service/shape_test.cc.
 absl::StatusOr<simulation::TrialVolumes> to_trial_volumes(const v1::FindShapeRequest& request);
 
 /// The answer: the figures, then the fields in slices.

@@ -5,37 +5,12 @@
 
 #include "core/geometry/mesh_topology.h"
 #include "server/backend/scan_reading.h"
-#include "server/entry/unary.h"
+#include "server/entry/prepared_stream.h"
 #include "server/wire/frame_encoding.h"
 #include "server/wire/names.h"
 
 namespace lipofill::server {
 namespace {
-
-/// Writes prepared slices one after the other.
-class DownloadStream : public grpc::ServerWriteReactor<v1::MeshSlice> {
- public:
-  explicit DownloadStream(grpc::CallbackServerContext* context) : context_(context) {}
-
-  void send(std::vector<v1::MeshSlice> slices) {
-    slices_ = std::move(slices);
-    StartWrite(&slices_[0]);
-  }
-  void fail(const absl::Status& status) { Finish(to_grpc_status(status)); }
-
-  void OnWriteDone(bool ok) override {
-    if (!ok) return Finish(to_grpc_status(absl::CancelledError("the client has gone")));
-    if (++sent_ == slices_.size()) return Finish(grpc::Status::OK);
-    if (const absl::Status known = check_still_known(context_); !known.ok()) return fail(known);
-    StartWrite(&slices_[sent_]);
-  }
-  void OnDone() override { delete this; }
-
- private:
-  grpc::CallbackServerContext* const context_;
-  std::vector<v1::MeshSlice> slices_;
-  size_t sent_ = 0;
-};
 
 using Slices = absl::StatusOr<std::vector<v1::MeshSlice>>;
 
@@ -64,7 +39,7 @@ Slices slice_scan(Backend& backend, const std::string& name) {
 /// Makes the slices on a thread for long calls and sends them, or says why it cannot.
 grpc::ServerWriteReactor<v1::MeshSlice>* send_slices(Backend& backend, grpc::CallbackServerContext* context,
                                                      const absl::Status& valid, std::function<Slices()> make) {
-  auto* stream = new DownloadStream(context);
+  auto* stream = new PreparedStream<v1::MeshSlice>(context);
   if (!valid.ok()) {
     stream->fail(valid);
     return stream;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "server/entry/unary.h"
+#include "server/entry/prepared_stream.h"
 #include "server/store/record_names.h"
 #include "server/wire/names.h"
 #include "server/wire/request_key.h"
@@ -14,31 +14,6 @@
 
 namespace lipofill::server {
 namespace {
-
-/// Sends prepared messages one after the other.
-class ShapeStream : public grpc::ServerWriteReactor<v1::FindShapeResponse> {
- public:
-  explicit ShapeStream(grpc::CallbackServerContext* context) : context_(context) {}
-
-  void send(std::vector<v1::FindShapeResponse> responses) {
-    responses_ = std::move(responses);
-    StartWrite(&responses_[0]);
-  }
-  void fail(const absl::Status& status) { Finish(to_grpc_status(status)); }
-
-  void OnWriteDone(bool ok) override {
-    if (!ok) return fail(absl::CancelledError("the client has gone"));
-    if (++sent_ == responses_.size()) return Finish(grpc::Status::OK);
-    if (const absl::Status known = check_still_known(context_); !known.ok()) return fail(known);
-    StartWrite(&responses_[sent_]);
-  }
-  void OnDone() override { delete this; }
-
- private:
-  grpc::CallbackServerContext* const context_;
-  std::vector<v1::FindShapeResponse> responses_;
-  size_t sent_ = 0;
-};
 
 /// The plan of a request; that of a simulation has what was injected since.
 absl::StatusOr<v1::SimulationSpec> read_plan(Backend& backend, const v1::FindShapeRequest& request) {
@@ -91,7 +66,7 @@ absl::StatusOr<ShapeRequest> read_request(Backend& backend, grpc::CallbackServer
 
 grpc::ServerWriteReactor<v1::FindShapeResponse>* find_shape(Backend& backend, grpc::CallbackServerContext* context,
                                                             const v1::FindShapeRequest& request) {
-  auto* stream = new ShapeStream(context);
+  auto* stream = new PreparedStream<v1::FindShapeResponse>(context);
   const Principal& caller = call_of(context).principal;
   const absl::Status asked = guarded([&]() -> absl::Status {
     if (absl::Status valid = check_call(context, request); !valid.ok()) return valid;

@@ -130,6 +130,12 @@ void InjectionSchedule::deliver(const std::vector<FilmLayout>& films,
   }
 }
 
+void InjectionSchedule::deliver_all(const std::vector<FilmLayout>& films, double time, double dt,
+                                    std::vector<Eigen::VectorXd>& received) {
+  deliver(
+      films, [](int, int) { return std::numeric_limits<double>::max(); }, time, dt, received);
+}
+
 double InjectionSchedule::due(const PlacedInjection& injection, double time) {
   const double elapsed = std::max(0.0, time - injection.start);
   return std::copysign(std::min(std::abs(injection.volume), injection.rate * elapsed), injection.volume);

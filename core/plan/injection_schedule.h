@@ -40,6 +40,10 @@ class InjectionSchedule {
   void deliver(const std::vector<FilmLayout>& films, absl::FunctionRef<double(int film, int cell)> held, double time,
                double dt, std::vector<Eigen::VectorXd>& received);
 
+  /// The same as if cells held whatever is taken out of them; the caller sees to what is owed.
+  void deliver_all(const std::vector<FilmLayout>& films, double time, double dt,
+                   std::vector<Eigen::VectorXd>& received);
+
   /// Volume due by `time` but not delivered, because more was to be taken out than was there [m3];
   /// negative or 0.
   double undelivered(double time) const;

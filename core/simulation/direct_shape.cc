@@ -30,8 +30,7 @@ Eigen::VectorXd volume_with(const mechanics::FilmCells& cells, const SimulationS
 std::optional<Hindrance> find_overdraft(const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
                                         plan::InjectionSchedule schedule, const SimulationState& rest) {
   std::vector<Eigen::VectorXd> injected;
-  schedule.deliver(
-      films, [](int, int) { return std::numeric_limits<double>::max(); }, 0.0, schedule.end(), injected);
+  schedule.deliver_all(films, 0.0, schedule.end(), injected);
   const equilibrium::Pools pools = equilibrium::find_pools(films, cells);
   const Eigen::VectorXd volume = pools.sum(volume_with(cells, rest, injected));
   for (int pool = 0; pool < pools.n(); ++pool) {

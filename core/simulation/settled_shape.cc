@@ -1,7 +1,6 @@
 // Settled shapes in place of steps.
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -38,10 +37,9 @@ bool Simulation::Impl::settle() {
     return true;
   }
   const double end = std::max(schedule.end(), state.time + spec.step);
-  const auto enough = [](int, int) { return std::numeric_limits<double>::max(); };
   schedule.get_delivered(delivered_before);
   const double total = schedule.delivered();
-  schedule.deliver(films, enough, state.time, end - state.time, injected);
+  schedule.deliver_all(films, state.time, end - state.time, injected);
   mechanics::SimulationState next;
   const equilibrium::Settled settled = direct->find(state, injected, next);
   if (settled.share == 0.0) {

@@ -107,9 +107,8 @@ absl::Status TrialShape::find(const TrialVolumes& volumes, bool from_last) {
   if (hindrance) return has_to_be_stepped(hindrance->text());
   impl.stepper->reset_cost();
   const double end = std::max(schedule->end(), impl.spec.step);
-  const auto enough = [](int, int) { return std::numeric_limits<double>::max(); };
   std::vector<Eigen::VectorXd> injected;
-  schedule->deliver(impl.films, enough, 0.0, end, injected);
+  schedule->deliver_all(impl.films, 0.0, end, injected);
   mechanics::SimulationState next;
   const equilibrium::Settled settled =
       from_last ? impl.direct->follow(*rest_, injected, next) : impl.direct->find(*rest_, injected, next);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace lipofill::bench {
@@ -42,8 +41,7 @@ absl::Status EquilibriumBench::set_up(const JawAngle& jaw) {
   const mechanics::SimulationState rest = stepper_->rest_state();
   springs_ = rest.spring_is_intact;
   std::vector<Eigen::VectorXd> injected;
-  const auto enough = [](int, int) { return std::numeric_limits<double>::max(); };
-  placed_.schedule.deliver(placed_.films, enough, 0.0, placed_.schedule.end(), injected);
+  placed_.schedule.deliver_all(placed_.films, 0.0, placed_.schedule.end(), injected);
   Eigen::VectorXd all(stepper_->cells().n()), on_tissue;
   for (size_t f = 0; f < injected.size(); ++f) {
     all.segment(stepper_->cells().offset[f], injected[f].size()) = injected[f];

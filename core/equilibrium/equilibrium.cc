@@ -112,7 +112,7 @@ void Equilibrium::return_to_held() {
 }
 
 std::vector<std::optional<Sensitivity>> Equilibrium::differentiate_by_volume() {
-  const Shape base = refine_last();
+  const Shape& base = refine_last();
   std::vector<std::optional<Sensitivity>> all;
   for (int pool = 0; pool < pools_.n(); ++pool) {
     all.push_back(differentiate(
@@ -122,7 +122,7 @@ std::vector<std::optional<Sensitivity>> Equilibrium::differentiate_by_volume() {
 }
 
 std::vector<std::optional<Sensitivity>> Equilibrium::differentiate_by_modulus() {
-  const Shape base = refine_last();
+  const Shape& base = refine_last();
   std::vector<std::optional<Sensitivity>> all;
   for (int layer = 0; layer < system_.n_layers(); ++layer) {
     const auto force = differentiate_force(base, layer);
@@ -142,7 +142,7 @@ bool Equilibrium::has_same_unknowns(const Equilibrium& other) const {
 
 std::optional<Sensitivity> Equilibrium::differentiate_towards(Equilibrium& beside, double step) {
   if (!has_same_unknowns(beside)) return {};
-  const Shape base = refine_last();
+  const Shape& base = refine_last();
   beside.balance_.bring_to(base, last_springs_);
   LoadChange change;
   change.force = (beside.balance_.force() - balance_.force()) / step;
@@ -152,13 +152,14 @@ std::optional<Sensitivity> Equilibrium::differentiate_towards(Equilibrium& besid
   return differentiate(base, change);
 }
 
-/// The last shape, closer to balance where that can be. The balance is there.
-Shape Equilibrium::refine_last() {
+/// Brings the last shape closer to balance where that can be, for all derivatives at it. The
+/// balance is there.
+const Shape& Equilibrium::refine_last() {
   Shape refined = last_;
   Solver solver(balance_, response_, pools_);
-  if (!solver.solve(last_target_, last_springs_, kDerivativeTolerance, refined)) refined = last_;
-  balance_.bring_to(refined, last_springs_);
-  return refined;
+  if (solver.solve(last_target_, last_springs_, kDerivativeTolerance, refined)) last_ = std::move(refined);
+  balance_.bring_to(last_, last_springs_);
+  return last_;
 }
 
 /// dr/d ln E of a layer.

@@ -96,7 +96,7 @@ class Equilibrium {
               const mechanics::FilmCells& cells, mechanics::TissueSystem& system, mechanics::FilmGeometry& geometry,
               const StaticLoad& load);
   Settled describe(const PoolTarget& target, const Shape& shape, double share) const;
-  Shape refine_last();
+  const Shape& refine_last();
   bool has_same_unknowns(const Equilibrium& other) const;
   std::optional<Eigen::VectorXd> differentiate_force(const Shape& at, int layer);
   std::optional<Sensitivity> differentiate(const Shape& at, const LoadChange& change);

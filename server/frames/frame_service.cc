@@ -8,6 +8,7 @@
 #include "server/entry/unary.h"
 #include "server/sessions/draining.h"
 #include "server/sessions/shortage.h"
+#include "server/wire/frame_encoding.h"
 #include "server/wire/names.h"
 
 namespace lipofill::server {
@@ -60,11 +61,7 @@ absl::StatusOr<ViewerOptions> to_viewer_options(const v1::WatchRequest& request)
   FieldViolations violations;
   violations.check_range("interval_ms", request.interval_ms(), 0.0, kMaxInterval, "ms");
   check_rate(request, violations);
-  if (request.field_type() != v1::ARRAY_TYPE_UNSPECIFIED && request.field_type() != v1::FLOAT32 &&
-      request.field_type() != v1::UINT16) {
-    violations.add("field_type",
-                   absl::StrCat("is ", v1::ArrayType_Name(request.field_type()), ", fields come as FLOAT32 or UINT16"));
-  }
+  check_field_type(request.field_type(), violations);
   if (request.has_heartbeat_ms()) violations.check_range("heartbeat_ms", request.heartbeat_ms(), 100.0, 3.6e6, "ms");
   check_acknowledgement(request, violations);
   if (!violations.empty()) return violations.to_status();

@@ -93,6 +93,11 @@ v1::FrameSlice to_whole_frame(const Frame& frame, const Selection& selection) {
   return whole;
 }
 
+void check_field_type(v1::ArrayType type, FieldViolations& violations) {
+  if (type == v1::ARRAY_TYPE_UNSPECIFIED || type == v1::FLOAT32 || type == v1::UINT16) return;
+  violations.add("field_type", absl::StrCat("is ", v1::ArrayType_Name(type), ", fields come as FLOAT32 or UINT16"));
+}
+
 void select_meshes(const std::vector<std::string>& meshes, RepeatedPtrField<v1::ArraySlice>& arrays) {
   const auto gone = std::remove_if(arrays.begin(), arrays.end(), [&meshes](const v1::ArraySlice& array) {
     return !contains(meshes, mesh_of(array.name()));

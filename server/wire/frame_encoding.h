@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/field_violations.h"
 #include "lipofill/v1/frame_service.pb.h"
 #include "server/sessions/frame.h"
 #include "server/sessions/selection.h"
@@ -19,6 +20,9 @@ v1::FrameSlice to_whole_frame(const Frame& frame, const Selection& selection);
 /// Leaves of meshes and frames that were kept only what is selected.
 void select_meshes(const std::vector<std::string>& meshes, google::protobuf::RepeatedPtrField<v1::ArraySlice>& arrays);
 void select_fields(const Selection& selection, v1::FrameSlice& frame);
+
+/// A violation of "field_type" for a type in which fields do not come.
+void check_field_type(v1::ArrayType type, FieldViolations& violations);
 
 /// Names of the meshes whose points are there.
 std::vector<std::string> mesh_names(const v1::MeshSlice& meshes);

@@ -106,11 +106,7 @@ absl::StatusOr<simulation::TrialVolumes> to_trial_volumes(const v1::FindShapeReq
     violations.add("spec", "is missing, and simulation as well: one of them says the plan");
   }
   if (!request.drag().empty()) violations.absorb("", id_or_new(request.drag(), 'd', "drag").status());
-  if (request.field_type() != v1::ARRAY_TYPE_UNSPECIFIED && request.field_type() != v1::FLOAT32 &&
-      request.field_type() != v1::UINT16) {
-    violations.add("field_type",
-                   absl::StrCat("is ", v1::ArrayType_Name(request.field_type()), ", fields come as FLOAT32 or UINT16"));
-  }
+  check_field_type(request.field_type(), violations);
   if (!violations.empty()) return violations.to_status();
   simulation::TrialVolumes volumes;
   for (const v1::InjectionVolume& injection : request.injections()) {

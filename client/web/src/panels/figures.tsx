@@ -1,9 +1,9 @@
 // The figures a surgeon looks for first, and how they came about.
-import { readable } from "../plan/anatomy";
 import { lookAt } from "../run/run";
 import { rows, simulation, timeShown } from "../run/state";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { Plot } from "../widgets/plot";
+import { ZoneTable } from "./zone_table";
 
 function Figure({
   label,
@@ -52,28 +52,7 @@ function rowNow() {
 function Zones() {
   const zones = simulation.value?.summary?.zones ?? [];
   if (zones.length === 0) return null;
-  return (
-    <table class="figures-table">
-      <thead>
-        <tr>
-          <th>Zone</th>
-          <th>mL</th>
-          <th>mmHg</th>
-          <th>mm</th>
-        </tr>
-      </thead>
-      <tbody>
-        {zones.map((zone) => (
-          <tr key={zone.name}>
-            <th>{readable(zone.name)}</th>
-            <td>{zone.volumeMl.toFixed(2)}</td>
-            <td>{(zone.meanPressurePa * mmHgPerPa).toFixed(1)}</td>
-            <td>{zone.maxThicknessMm.toFixed(1)}</td>
-          </tr>
-        ))}
-      </tbody>
-    </table>
-  );
+  return <ZoneTable zones={zones} />;
 }
 
 /** What to know before relying on the figures. */

@@ -1,5 +1,5 @@
 // The figures of a shape that was not run, on the picture.
-import { readable } from "../plan/anatomy";
+import { ZoneTable } from "../panels/zone_table";
 import { run } from "../run/run";
 import { simulation } from "../run/state";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
@@ -60,28 +60,7 @@ function Numbers({ found, of }: { found: FoundShape; of: ShapeOf }) {
         />
         <Figure label="Volume" unit="mL" value={summary.injectedMl.toFixed(2)} before={before?.injectedMl.toFixed(2)} />
       </dl>
-      {summary.zones.length > 1 && (
-        <table class="figures-table">
-          <thead>
-            <tr>
-              <th>Zone</th>
-              <th>mL</th>
-              <th>mmHg</th>
-              <th>mm</th>
-            </tr>
-          </thead>
-          <tbody>
-            {summary.zones.map((zone) => (
-              <tr key={zone.name}>
-                <th>{readable(zone.name)}</th>
-                <td>{zone.volumeMl.toFixed(2)}</td>
-                <td>{(zone.meanPressurePa * mmHgPerPa).toFixed(1)}</td>
-                <td>{zone.maxThicknessMm.toFixed(1)}</td>
-              </tr>
-            ))}
-          </tbody>
-        </table>
-      )}
+      {summary.zones.length > 1 && <ZoneTable zones={summary.zones} />}
       {found.volumeShare < 1 && (
         <p class="warning">
           Only {(100 * found.volumeShare).toFixed(0)} % of the fat goes in, and that is what is shown: {found.reason}

@@ -131,7 +131,7 @@ void add_shape_command(CLI::App& root, Application& application) {
   command->add_option("--volume", options->volumes, "NUMBER=ML: the volume of the plan's injection NUMBER, from 1");
   command->add_option("--add", options->added, "ZONE=ML: fat in a zone beyond the plan's; negative: taken out");
   command->add_flag("--sensitivities", options->sensitivities,
-                    "What a little more of each volume and each stiffness does");
+                    "Say what a little more of each volume, stiffness and thickness does");
 }
 
 }  // namespace lipofill::client

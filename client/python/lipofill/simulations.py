@@ -319,7 +319,7 @@ class Simulations:
         fields : sequence of str
             Of the meshes "skin" and "scan"; default: displacement and pressure of the skin.
         with_sensitivities : bool
-            Say what a little more of each volume and each stiffness does.
+            Say what a little more of each volume, stiffness and thickness does.
 
         Raises
         ------

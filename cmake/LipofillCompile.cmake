@@ -1,12 +1,8 @@
 # Warnings, floating-point rules and the compiler cache, for all of our own targets.
 
-# Objects of one checkout serve another: the compiler cache sees paths relative to the checkout.
-# Without its leave to be sloppy about these two it would not cache what is compiled with
-# precompiled headers.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(launcher
-    env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
+  set(launcher ${PROJECT_SOURCE_DIR}/cmake/cached_compile ${PROJECT_SOURCE_DIR})
   set(CMAKE_CXX_COMPILER_LAUNCHER ${launcher})
   set(CMAKE_C_COMPILER_LAUNCHER ${launcher})
 endif()

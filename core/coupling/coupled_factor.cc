@@ -74,4 +74,8 @@ void CoupledFactor::solve(const Eigen::VectorXd& r, Eigen::VectorXd& x) {
   });
 }
 
+void CoupledFactor::solve_many(const Eigen::MatrixXd& r, Eigen::MatrixXd& x) {
+  with_factor([&](auto& factor) { factor.solve_many(r, x); });
+}
+
 }  // namespace lipofill::coupling

@@ -49,6 +49,9 @@ class CoupledFactor {
 
   /// x = S^-1 r, a solve of its own: no gap, no pressure.
   void solve(const Eigen::VectorXd& r, Eigen::VectorXd& x);
+  /// X = S^-1 R for several right sides at once (n_dofs, n). A column of X depends on its own of R
+  /// alone; it differs from that of solve() by round-off.
+  void solve_many(const Eigen::MatrixXd& r, Eigen::MatrixXd& x);
 
  private:
   template <typename Visit>

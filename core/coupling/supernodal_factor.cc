@@ -7,6 +7,7 @@
 #include "core/coupling/algebra_threads.h"
 #include "core/coupling/blas.h"
 #include "core/coupling/panel_solve.h"
+#include "core/coupling/panel_solve_many.h"
 
 namespace lipofill::coupling {
 
@@ -219,6 +220,74 @@ void SupernodalFactor<Scalar>::solve_backward(const Eigen::VectorXd& pressure, E
   for (int k = 0; k < n_dofs; ++k) {
     const int dof = analysis_->order()[k];
     x[dof] = static_cast<double>(solution_[k]) * scale_[dof];
+  }
+}
+
+/// All groups go through a supernode while it is near.
+template <typename Scalar>
+void SupernodalFactor<Scalar>::solve_many(const Eigen::MatrixXd& r, Eigen::MatrixXd& x) {
+  constexpr int kWidth = PanelSolveMany<Scalar>::kWidth;
+  const int n_dofs = analysis_->n_dofs(), n_rows = n_dofs + analysis_->n_cells();
+  const auto n = static_cast<int>(r.cols());
+  const int n_groups = (n + kWidth - 1) / kWidth;
+  many_.assign(static_cast<size_t>(n_groups) * n_rows * kWidth, Scalar(0));
+  many_buffer_.resize(static_cast<size_t>(analysis_->max_rows()) * kWidth);
+  const auto place = [&](int row, int c) {
+    return (static_cast<size_t>(c / kWidth) * n_rows + row) * kWidth + static_cast<size_t>(c % kWidth);
+  };
+  for (int k = 0; k < n_dofs; ++k) {
+    const int dof = analysis_->order()[k];
+    for (int c = 0; c < n; ++c) many_[place(k, c)] = static_cast<Scalar>(r(dof, c) * scale_[dof]);
+  }
+  solve_many_forward(n_groups);
+  for (int k = n_dofs; k < n_rows; ++k) {
+    for (int c = 0; c < n_groups * kWidth; ++c) many_[place(k, c)] = Scalar(0);
+  }
+  solve_many_backward(n_groups);
+  x.resize(n_dofs, n);
+  for (int k = 0; k < n_dofs; ++k) {
+    const int dof = analysis_->order()[k];
+    for (int c = 0; c < n; ++c) x(dof, c) = static_cast<double>(many_[place(k, c)]) * scale_[dof];
+  }
+}
+
+template <typename Scalar>
+void SupernodalFactor<Scalar>::solve_many_forward(int n_groups) {
+  constexpr int kWidth = PanelSolveMany<Scalar>::kWidth;
+  const std::ptrdiff_t group_size = static_cast<std::ptrdiff_t>(analysis_->n_dofs() + analysis_->n_cells()) * kWidth;
+  Scalar* const t = many_buffer_.data();
+  for (const Supernode& node : analysis_->supernodes()) {
+    const int* rows = analysis_->rows().data() + node.rows;
+    for (int g = 0; g < n_groups; ++g) {
+      Scalar* const group = many_.data() + g * group_size;
+      Scalar* const top = group + static_cast<std::ptrdiff_t>(node.first_column) * kWidth;
+      std::copy_n(top, node.n_columns * kWidth, t);
+      std::fill_n(t + node.n_columns * kWidth, (node.n_rows - node.n_columns) * kWidth, Scalar(0));
+      PanelSolveMany<Scalar>(values_of(node), node.n_rows, node.n_columns).forward(t);
+      std::copy_n(t, node.n_columns * kWidth, top);
+      for (int k = node.n_columns; k < node.n_rows; ++k) {
+        Scalar* const below = group + static_cast<std::ptrdiff_t>(rows[k]) * kWidth;
+        for (int c = 0; c < kWidth; ++c) below[c] += t[k * kWidth + c];
+      }
+    }
+  }
+}
+
+template <typename Scalar>
+void SupernodalFactor<Scalar>::solve_many_backward(int n_groups) {
+  constexpr int kWidth = PanelSolveMany<Scalar>::kWidth;
+  const std::ptrdiff_t group_size = static_cast<std::ptrdiff_t>(analysis_->n_dofs() + analysis_->n_cells()) * kWidth;
+  Scalar* const t = many_buffer_.data();
+  for (auto node = analysis_->supernodes().rbegin(); node != analysis_->supernodes().rend(); ++node) {
+    const int* rows = analysis_->rows().data() + node->rows;
+    for (int g = 0; g < n_groups; ++g) {
+      Scalar* const group = many_.data() + g * group_size;
+      for (int k = 0; k < node->n_rows; ++k) {
+        std::copy_n(group + static_cast<std::ptrdiff_t>(rows[k]) * kWidth, kWidth, t + k * kWidth);
+      }
+      PanelSolveMany<Scalar>(values_of(*node), node->n_rows, node->n_columns).backward(t);
+      std::copy_n(t, node->n_columns * kWidth, group + static_cast<std::ptrdiff_t>(node->first_column) * kWidth);
+    }
   }
 }
 

@@ -1,6 +1,8 @@
 #include "core/equilibrium/contact.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace lipofill::equilibrium {
 namespace {
@@ -64,6 +66,14 @@ Eigen::VectorXd find_missing(const StaticBalance& balance, const Pools& pools, c
     if (shape.is_at_limit[static_cast<size_t>(pool)]) missing[pool] = target.lowest_head - shape.pressure[pool];
   }
   return missing;
+}
+
+double relative_lack(const Pools& pools, const PoolTarget& target, const Shape& shape, const Eigen::VectorXd& missing) {
+  double lacking = 0.0;
+  for (int pool = 0; pool < pools.n(); ++pool) {
+    if (!shape.is_at_limit[static_cast<size_t>(pool)]) lacking += std::abs(missing[pool]);
+  }
+  return lacking / std::max(target.volume.cwiseAbs().sum(), std::numeric_limits<double>::min());
 }
 
 bool update_active_sets(const StaticBalance& balance, const Pools& pools, const PoolTarget& target, bool may_open,

@@ -19,6 +19,9 @@ struct PoolTarget {
 Eigen::VectorXd find_missing(const StaticBalance& balance, const Pools& pools, const PoolTarget& target,
                              const Shape& shape);
 
+/// What the pools lack of their volume in all, as a share of it; those at the limit lack none.
+double relative_lack(const Pools& pools, const PoolTarget& target, const Shape& shape, const Eigen::VectorXd& missing);
+
 /// Brings the active sets of a shape in balance to what it says: a cell whose gap is negative
 /// closes, a closed one that its contact pressure pulls at opens; a pool below the lowest head
 /// comes to the limit, one there whose fat overfills its gap leaves it. Returns true when something

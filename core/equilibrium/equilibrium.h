@@ -4,14 +4,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "core/equilibrium/contact.h"
-#include "core/equilibrium/pools.h"
+#include "core/equilibrium/load_change.h"
+#include "core/equilibrium/parts.h"
+#include "core/equilibrium/rest_start.h"
 #include "core/equilibrium/solver.h"
-#include "core/equilibrium/static_balance.h"
-#include "core/equilibrium/tangent.h"
+#include "core/equilibrium/trend.h"
 
 namespace lipofill::equilibrium {
 
@@ -40,6 +41,22 @@ struct Sensitivity {
   Eigen::VectorXd pool_head;      ///< [Pa]
 };
 
+/// The change of a shape by a unit of each parameter, to first order, good to 1 %; nothing for a
+/// parameter whose answer does not converge.
+struct Sensitivities {
+  std::vector<std::optional<Sensitivity>> by_volume;   ///< of each pool [1/m3]
+  std::vector<std::optional<Sensitivity>> by_modulus;  ///< of ln E of each layer
+  std::vector<std::optional<Sensitivity>> by_tissue;   ///< of the parameter of each TissueBeside
+};
+
+class Equilibrium;
+
+/// A tissue that differs by a little of some parameter, with the same nodes, cells and injections.
+struct TissueBeside {
+  Equilibrium* tissue = nullptr;
+  double step = 0.0;  ///< of the parameter
+};
+
 /// The static problem of fat at rest, the limit t -> infinity of a plan in scope (scope.h):
 ///
 ///     f_int(x) - M g = B(x)^T p,   p_i = H_z + rho g . c_i,   sum over pool z of gap_i(x) = V_z,   gap_i >= 0
@@ -57,9 +74,9 @@ class Equilibrium {
                                                              mechanics::FilmGeometry& geometry, const StaticLoad& load,
                                                              mechanics::StepCost& cost);
 
-  const Pools& pools() const { return pools_; }
+  const Pools& pools() const { return parts_.pools; }
   /// Of each pool at rest thickness [m3].
-  Eigen::VectorXd rest_volume() const { return pools_.sum(balance_.rest_volume()); }
+  Eigen::VectorXd rest_volume() const { return pools().sum(parts_.balance.rest_volume()); }
 
   /// The shape for a target, from rest: it depends on what is passed in alone.
   /// @param springs    of ligaments that are intact: 1, else 0
@@ -74,45 +91,33 @@ class Equilibrium {
   /// True when the last shape was found from rest.
   bool is_from_rest() const { return is_from_rest_; }
 
-  /// For ensembles (ensemble.h): factors at the last shape, and holds both.
-  void hold_here();
-  /// The shape for a target from the one held, with its factor; from rest where that fails.
-  Settled find_from_held(const PoolTarget& target, const Eigen::VectorXd& springs, double tolerance);
-  /// Makes the factor that is held again, where another took its place.
-  void return_to_held();
-  /// TissueSystem::scale_moduli.
-  absl::Status scale_moduli(const Eigen::VectorXd& factors) { return system_.scale_moduli(factors); }
+  /// What a unit of each parameter does to the last shape; all of its volume is in. The parameters
+  /// are answered side by side.
+  Sensitivities differentiate(const std::vector<TissueBeside>& beside);
+  /// Of the pools' volumes alone.
+  std::vector<std::optional<Sensitivity>> differentiate_by_volume();
 
-  /// What a unit of each parameter does to the last shape, to first order, good to 1 %; all of its
-  /// volume is in. A parameter whose answer does not converge has none.
-  std::vector<std::optional<Sensitivity>> differentiate_by_volume();   ///< of each pool [1/m3]
-  std::vector<std::optional<Sensitivity>> differentiate_by_modulus();  ///< of ln E of each layer
-  /// The same of whatever makes the tissue of `beside` from this one, with the same nodes, cells
-  /// and injections, by `step` units of it.
-  std::optional<Sensitivity> differentiate_towards(Equilibrium& beside, double step);
+  /// For those that go other ways with the same tissue (ensemble.h).
+  Parts& parts() { return parts_; }
+  const Found& last() const { return last_; }
+  /// A shape in balance, where the balance is.
+  Settled describe(const PoolTarget& target, const Shape& shape, double share) const;
 
  private:
-  Equilibrium(Pools pools, std::unique_ptr<mechanics::TissueFactor> factor, const std::vector<plan::FilmLayout>& films,
-              const mechanics::FilmCells& cells, mechanics::TissueSystem& system, mechanics::FilmGeometry& geometry,
-              const StaticLoad& load);
-  Settled describe(const PoolTarget& target, const Shape& shape, double share) const;
-  const Shape& refine_last();
-  bool has_same_unknowns(const Equilibrium& other) const;
-  std::optional<Eigen::VectorXd> differentiate_force(const Shape& at, int layer);
-  std::optional<Sensitivity> differentiate(const Shape& at, const LoadChange& change);
+  Equilibrium(const model::FaceModel& model, std::unique_ptr<mechanics::TissueFactor> factor,
+              const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
+              mechanics::TissueSystem& system, mechanics::FilmGeometry& geometry, const StaticLoad& load)
+      : parts_(std::move(factor), films, cells, system, geometry, load), rest_start_(model, parts_, load) {}
+  bool leave_last(const PoolTarget& target, Shape& shape);
+  void remember(Shape shape, const PoolTarget& target, const Eigen::VectorXd& springs, bool is_from_rest);
+  std::vector<std::optional<Sensitivity>> answer(const std::vector<LoadChange>& changes);
 
-  Pools pools_;
-  mechanics::TissueSystem& system_;
-  std::unique_ptr<mechanics::TissueFactor> factor_;
-  StaticBalance balance_;
-  HeldResponse response_;
-  Shape last_;              ///< no row: there is none
-  PoolTarget last_target_;  ///< that it was found for
-  Eigen::VectorXd last_springs_;
+  Parts parts_;
+  RestStart rest_start_;
+  Found last_;
   bool is_from_rest_ = false;
-  Shape held_;
-  PoolTarget held_target_;
-  bool is_held_ = false;  ///< the factor is of held_ and of the nominal moduli
+  Trend trend_;                 ///< of the shapes that followed one another to the last one
+  AndersonMixing drag_mixing_;  ///< of their iterations
 };
 
 }  // namespace lipofill::equilibrium

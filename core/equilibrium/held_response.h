@@ -1,13 +1,32 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <map>
+#include <vector>
 
 #include "core/equilibrium/shape.h"
 #include "core/equilibrium/static_balance.h"
 #include "core/mechanics/tissue_factor.h"
 
 namespace lipofill::equilibrium {
+
+/// A factor is of a shape far away where this share of the forces is left after a step with it.
+inline constexpr double kFarShare = 0.2;
+
+/// What HeldResponse is asked, and what it answers.
+struct Question {
+  const Shape* shape = nullptr;  ///< says which rows there are; none of its values is used
+  Eigen::MatrixXd rows;          ///< A^T there [m2] (n_dofs, n_rows): find_rows
+  Eigen::VectorXd force;         ///< r [N] (n_dofs)
+  Eigen::VectorXd missing;       ///< what each row's gap lacks [m3], at the limit what its pressure lacks [Pa]
+  bool is_answered = false;      ///< false: the rows depend on one another
+  Eigen::VectorXd dx;            ///< [m] (n_dofs)
+  Eigen::VectorXd dp;            ///< [Pa] (n_rows)
+};
+
+/// A^T of a shape (n_dofs, n_rows): the rows of B summed a pool, and those of closed cells.
+Eigen::MatrixXd find_rows(const Eigen::SparseMatrix<double>& derivative, const Pools& pools, const Shape& shape);
 
 /// The answer of tissue and pools to what is out of balance, by a factor that may be of an earlier
 /// shape: the solution of
@@ -32,23 +51,24 @@ class HeldResponse {
   bool is_late(const StaticBalance& balance) const { return !mechanics::is_same(factored_at_, balance.positions()); }
 
   /// Solves for dx and dp with the balance's own r. False when the rows depend on one another.
-  /// @param missing  what each row's gap lacks [m3]; for a pool at the limit what its pressure lacks [Pa]
+  /// @param missing  as Question::missing
   bool correct(const StaticBalance& balance, const Shape& shape, const Eigen::VectorXd& missing, Eigen::VectorXd& dx,
-               Eigen::VectorXd& dp) {
-    return answer(balance, shape, balance.force(), missing, dx, dp);
-  }
-  /// The same for an r that is given [N] (n_dofs).
-  bool answer(const StaticBalance& balance, const Shape& shape, const Eigen::VectorXd& force,
-              const Eigen::VectorXd& missing, Eigen::VectorXd& dx, Eigen::VectorXd& dp);
+               Eigen::VectorXd& dp);
   /// The same for forces in balance: r = 0.
   bool correct_volumes(const StaticBalance& balance, const Shape& shape, const Eigen::VectorXd& missing,
                        Eigen::VectorXd& dx, Eigen::VectorXd& dp);
+  /// Answers several questions at once: they share the reading of the factor. An answer does not
+  /// depend on the questions beside it.
+  void answer(const std::vector<Question*>& questions);
+
+  /// S0^-1 A0^T of the pools (n_dofs, n_pools).
+  const Eigen::MatrixXd& of_pools() const { return of_pools_; }
 
  private:
   void gather_columns(const Shape& shape);
   const Eigen::VectorXd& column_of_cell(int cell);
-  bool solve_rows(const StaticBalance& balance, const Shape& shape, const Eigen::VectorXd& right,
-                  const Eigen::VectorXd& missing, Eigen::VectorXd& dp);
+  bool add_pressures(const Shape& shape, const Eigen::MatrixXd& rows, const Eigen::VectorXd& missing,
+                     Eigen::VectorXd& dx, Eigen::VectorXd& dp);
 
   mechanics::TissueFactor& factor_;
   const Pools& pools_;

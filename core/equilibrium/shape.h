@@ -17,6 +17,17 @@ struct Shape {
 
   Eigen::Index n_rows() const { return pressure.size(); }
 
+  /// All of them in one: the displacement, then the pressures.
+  Eigen::VectorXd unknowns() const {
+    Eigen::VectorXd all(displacement.size() + pressure.size());
+    all << displacement, pressure;
+    return all;
+  }
+  void move_by(const Eigen::VectorXd& unknowns) {
+    displacement += unknowns.head(displacement.size());
+    pressure += unknowns.tail(pressure.size());
+  }
+
   /// The rest, with all pressures 0 and no cell closed.
   static Shape at_rest(int n_dofs, const Pools& pools) {
     return {Eigen::VectorXd::Zero(n_dofs),

@@ -13,8 +13,6 @@ constexpr double kSlowGain = 0.55;
 constexpr int kMaxSlowIterations = 3;
 /// An error that grows by more than this is going astray.
 constexpr double kGrowth = 3.0;
-/// After the first step the factor is of a shape far away where this share of the forces is left.
-constexpr double kFarShare = 0.2;
 /// Rounds of the active sets, and those after which cells only close.
 constexpr int kMaxSetChanges = 40;
 constexpr int kOpeningSetChanges = 20;
@@ -44,10 +42,12 @@ bool Solver::solve(const PoolTarget& target, const Eigen::VectorXd& springs, dou
 /// Iterates with the active sets as they are. The balance is at `shape` before and after.
 bool Solver::iterate(const PoolTarget& target, double tolerance, Shape& shape) {
   if (measure(target, tolerance, shape) <= 1.0) return true;
-  // The first step brings the volumes in, and forces out of balance: what was before tells nothing.
-  mixing_.reset();
-  if (!advance(shape)) return false;
-  mixing_.reset();
+  mixing_.leap();
+  if (volume_error_ > balance_.relative_force()) {
+    // A step brings the volumes in, and forces out of balance: what was before tells nothing.
+    if (!advance(shape)) return false;
+    mixing_.reset();
+  }
   Shape best = shape;
   double best_error = kInfinity, last_error = kInfinity;
   int slow = 0;
@@ -62,7 +62,7 @@ bool Solver::iterate(const PoolTarget& target, double tolerance, Shape& shape) {
     const bool grows = !(error <= kGrowth * last_error);
     const bool is_far = iteration == 0 && error * tolerance > kFarShare;
     last_error = error;
-    if (is_far || grows || slow >= kMaxSlowIterations) {
+    if ((is_far && response_.is_late(balance_)) || grows || slow >= kMaxSlowIterations) {
       if (grows) {
         shape = best;
         bring_to(shape);
@@ -70,7 +70,6 @@ bool Solver::iterate(const PoolTarget& target, double tolerance, Shape& shape) {
       }
       if (!response_.is_late(balance_)) break;
       if (!renew()) return false;
-      mixing_.reset();
       slow = 0;
       last_error = kInfinity;
     }
@@ -102,6 +101,7 @@ bool Solver::advance(Shape& shape) {
 
 bool Solver::renew() {
   ++cost_.factors;
+  mixing_.reset();
   if (response_.renew(balance_, springs_)) return true;
   reason_ = "the tissue's stiffness is not positive definite";
   return false;
@@ -114,30 +114,30 @@ void Solver::bring_to(const Shape& shape) {
 /// How far forces and volumes are from balance, in tolerances; infinity for a folded tissue.
 double Solver::measure(const PoolTarget& target, double tolerance, const Shape& shape) {
   missing_ = find_missing(balance_, pools_, target, shape);
+  volume_error_ = relative_lack(pools_, target, shape, missing_);
   if (balance_.is_folded()) return kInfinity;
-  double lacking = 0.0;
-  for (int pool = 0; pool < pools_.n(); ++pool) {
-    if (!shape.is_at_limit[static_cast<size_t>(pool)]) lacking += std::abs(missing_[pool]);
-  }
-  const double of_volume = lacking / std::max(target.volume.cwiseAbs().sum(), std::numeric_limits<double>::min());
-  return std::max(balance_.relative_force(), of_volume) / tolerance;
+  return std::max(balance_.relative_force(), volume_error_) / tolerance;
 }
 
-/// Newton's iteration on the volumes alone, along the held response.
+/// Newton's iteration on the volumes alone, along the held response; forces follow in the end.
 bool Solver::make_volumes_exact(const PoolTarget& target, Shape& shape) {
   const double round_off = kVolumeRoundOff * target.volume.cwiseAbs().sum();
+  bool has_moved = false, is_exact = false;
   for (int round = 0; round < kMaxVolumeRounds; ++round) {
     missing_ = find_missing(balance_, pools_, target, shape);
     Eigen::VectorXd volumes = missing_;
     for (int pool = 0; pool < pools_.n(); ++pool) {
       if (shape.is_at_limit[static_cast<size_t>(pool)]) volumes[pool] = 0.0;
     }
-    if (volumes.cwiseAbs().sum() <= round_off) return true;
-    if (!response_.correct_volumes(balance_, shape, missing_, dx_, dp_)) break;
+    is_exact = volumes.cwiseAbs().sum() <= round_off;
+    if (is_exact || !response_.correct_volumes(balance_, shape, missing_, dx_, dp_)) break;
     shape.displacement += dx_;
     shape.pressure += dp_;
-    bring_to(shape);
+    balance_.bring_gaps_to(shape);
+    has_moved = true;
   }
+  if (has_moved) balance_.bring_forces_to_gaps(shape, springs_);
+  if (is_exact) return true;
   if (balance_.is_folded()) reason_ = "a hexahedron of the tissue is turned inside out";
   return reason_.empty();
 }

@@ -24,7 +24,12 @@ class Solver {
  public:
   /// What is passed here outlives the solver.
   Solver(StaticBalance& balance, HeldResponse& response, const Pools& pools)
-      : balance_(balance), response_(response), pools_(pools) {}
+      : Solver(balance, response, pools, own_mixing_) {}
+  /// The same with an acceleration that knows of earlier iterations with the factor at hand.
+  Solver(StaticBalance& balance, HeldResponse& response, const Pools& pools, AndersonMixing& mixing)
+      : balance_(balance), response_(response), pools_(pools), mixing_(mixing) {}
+  Solver(const Solver&) = delete;
+  Solver& operator=(const Solver&) = delete;
 
   /// Improves `shape` until forces balance to `tolerance` (relative, of all that act) and gaps hold
   /// the volumes to round-off; the balance is then there. False, with reason(), when it cannot;
@@ -45,10 +50,12 @@ class Solver {
   StaticBalance& balance_;
   HeldResponse& response_;
   const Pools& pools_;
-  AndersonMixing mixing_;
+  AndersonMixing own_mixing_;
+  AndersonMixing& mixing_;
   SolverCost cost_;
   std::string reason_;
   Eigen::VectorXd springs_;
+  double volume_error_ = 0.0;  ///< what the pools lack, share of what they are to hold
   Eigen::VectorXd missing_, dx_, dp_;
   Eigen::VectorXd unknowns_, correction_, next_;  ///< displacement, then pressures
 };

@@ -19,11 +19,19 @@ StaticBalance::StaticBalance(mechanics::TissueSystem& system, const std::vector<
 }
 
 void StaticBalance::bring_to(const Shape& shape, const Eigen::VectorXd& springs) {
+  bring_gaps_to(shape);
+  bring_forces_to_gaps(shape, springs);
+}
+
+void StaticBalance::bring_gaps_to(const Shape& shape) {
   positions_ = system_.rest_positions();
   system_.add_displacement(shape.displacement, positions_);
-  system_.bring_forces_to(positions_, springs, std::numeric_limits<double>::infinity());
   system_.evaluate_gaps(positions_);
   gap_ = rest_ + system_.gaps().volume();
+}
+
+void StaticBalance::bring_forces_to_gaps(const Shape& shape, const Eigen::VectorXd& springs) {
+  system_.bring_forces_to(positions_, springs, std::numeric_limits<double>::infinity());
   cell_pressure_ = shape.spread(pools_, shape.pressure);
   if (!load_.gravity.isZero(0.0)) {
     find_hydrostatic_pressure();

@@ -32,6 +32,11 @@ class StaticBalance {
 
   /// Brings everything to a shape with the springs that are intact (1, else 0).
   void bring_to(const Shape& shape, const Eigen::VectorXd& springs);
+  /// Brings positions and gaps there, at a fraction of the cost; pressures and forces stay as they
+  /// are.
+  void bring_gaps_to(const Shape& shape);
+  /// Brings pressures and forces of a shape to where its gaps are.
+  void bring_forces_to_gaps(const Shape& shape, const Eigen::VectorXd& springs);
 
   const Eigen::Matrix3Xd& positions() const { return positions_; }         ///< x [m] (3, n_nodes)
   const Eigen::VectorXd& force() const { return force_; }                  ///< r (n_dofs)

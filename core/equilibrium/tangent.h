@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "core/equilibrium/held_response.h"
 
@@ -19,15 +20,18 @@ struct Tangent {
   Eigen::VectorXd pressure;      ///< of each row [Pa]
 };
 
-/// How a shape in balance answers to a small change, to first order, its active sets as they are:
+/// How a shape in balance answers to small changes, to first order, its active sets as they are:
 ///
 ///     J (dx, dp) = (force, volume),   J = -d(r, gap)/d(x, p) at the shape
 ///
-/// J has terms that the held factor leaves out: the answer is corrected by that factor until a
-/// correction is less than 0.2 % of it, with J (dx, dp) from a difference of forces and gaps along
-/// (dx, dp). Nothing where it does not converge. The balance is at the shape before and after.
+/// J has terms that the held factor leaves out: an answer is corrected by that factor until what is
+/// left of it, by the rate at which corrections fall, is less than 0.2 %, with J (dx, dp) from a
+/// difference of forces and gaps along (dx, dp). All changes are answered side by side; an answer
+/// does not depend on the others. Nothing for one that does not converge. The balance is at the
+/// shape before and after.
 /// Checked by tests/unit/equilibrium/tangent_test.cc.
-std::optional<Tangent> find_tangent(StaticBalance& balance, HeldResponse& response, const Pools& pools,
-                                    const Shape& shape, const Eigen::VectorXd& springs, const LoadChange& change);
+std::vector<std::optional<Tangent>> find_tangents(StaticBalance& balance, HeldResponse& response, const Pools& pools,
+                                                  const Shape& shape, const Eigen::VectorXd& springs,
+                                                  const std::vector<LoadChange>& changes);
 
 }  // namespace lipofill::equilibrium

@@ -47,6 +47,12 @@ void TissueFactor::solve(const Eigen::VectorXd& r, Eigen::VectorXd& x) {
   factor_.solve(r, x);
 }
 
+void TissueFactor::solve_many(const Eigen::MatrixXd& r, Eigen::MatrixXd& x) {
+  const PhaseTimer timer(cost_.times.solve);
+  cost_.tissue_solves += static_cast<int>(r.cols());
+  factor_.solve_many(r, x);
+}
+
 /// The share that a solve leaves of a pressure in every film.
 double TissueFactor::measure_error() {
   load_ = system_.gaps().derivative().transpose() * Eigen::VectorXd::Ones(system_.gaps().volume().size());

@@ -29,8 +29,10 @@ class TissueFactor {
   bool factor_at(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& springs);
   /// x = (K + K_G)^-1 r with the last factor [m].
   void solve(const Eigen::VectorXd& r, Eigen::VectorXd& x);
-  /// Begins with float32 again: what comes does not depend on what was.
-  void begin() { precision_ = coupling::Precision::kSingle; }
+  /// X = (K + K_G)^-1 R for several right sides at once (n_dofs, n); each column as if alone.
+  void solve_many(const Eigen::MatrixXd& r, Eigen::MatrixXd& x);
+  /// Begins anew: what comes does not depend on what was.
+  void begin(coupling::Precision precision = coupling::Precision::kSingle) { precision_ = precision; }
   bool is_double() const { return precision_ == coupling::Precision::kDouble; }
 
  private:

@@ -108,7 +108,9 @@ absl::Status TissueSystem::scale_moduli(const Eigen::VectorXd& factors) {
   std::vector<double> moduli = setup_.youngs_moduli;
   for (size_t k = 0; k < moduli.size(); ++k) moduli[k] *= factors[static_cast<Eigen::Index>(k)];
   const absl::Status set = setup_.tissue.set_youngs_moduli(moduli);
-  if (set.ok()) forces_positions_.resize(3, 0);
+  if (!set.ok()) return set;
+  forces_positions_.resize(3, 0);
+  moduli_ = factors;
   return set;
 }
 

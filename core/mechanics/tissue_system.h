@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -37,6 +38,8 @@ class TissueSystem {
   /// stiffness have it when they are next brought somewhere. INVALID_ARGUMENT, and nothing
   /// changes, where that takes a modulus out of its bounds.
   absl::Status scale_moduli(const Eigen::VectorXd& factors);
+  /// The factors that are in force.
+  const Eigen::VectorXd& moduli() const { return moduli_; }
   int n_layers() const { return static_cast<int>(setup_.youngs_moduli.size()); }
 
   /// Brings the gaps' volumes and their derivative to positions.
@@ -56,13 +59,17 @@ class TissueSystem {
   void add_displacement(const Eigen::VectorXd& dx, Eigen::Matrix3Xd& x) const;
 
  private:
-  TissueSystem(TissueSetup setup, StepCost& cost) : setup_(std::move(setup)), cost_(cost) {}
+  TissueSystem(TissueSetup setup, StepCost& cost)
+      : setup_(std::move(setup)),
+        cost_(cost),
+        moduli_(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(setup_.youngs_moduli.size()))) {}
   absl::Status set_up_gaps(const model::FaceModel& model, const std::vector<plan::FilmLayout>& films);
   absl::Status check_every_cell_can_open(const std::vector<plan::FilmLayout>& films, const FilmCells& cells);
   void set_springs(const Eigen::Matrix3Xd& x, const Eigen::VectorXd& springs);
 
   TissueSetup setup_;
   StepCost& cost_;
+  Eigen::VectorXd moduli_;  ///< over those of the setup
   std::unique_ptr<coupling::GapSystem> gaps_;
   std::vector<std::string> gap_keys_;
   double least_force_ = 0.0;

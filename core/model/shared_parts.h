@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -12,15 +13,24 @@
 
 namespace lipofill::model {
 
+/// How tissue at rest answers, by a factor there: core/equilibrium/rest_start.h.
+struct RestResponse {
+  Eigen::MatrixXd of_pools;  ///< to a pressure in each pool [m/Pa] (n_dofs, n_pools)
+  Eigen::VectorXd of_load;   ///< to what is out of balance [m] (n_dofs)
+  bool is_double = false;    ///< float32 was not enough
+};
+
 /// Parts that all simulations of a model share as long as one of them lives: element matrices and
 /// patterns, the places of the gaps on the tissue, the analysis of the factorisation. None of it is
 /// written once it is made, and it is the same whoever makes it first: results do not depend on the
-/// sharing. Young's moduli are no part of them, so that tissues of other stiffness share them too.
+/// sharing. Young's moduli are no part of them but of rest responses, so that tissues of other
+/// stiffness share them too.
 /// Thread-safe. Checked by tests/unit/model/shared_parts_test.cc.
 struct SharedParts {
   SharedCache<solid::TissueStructure> tissues;
   SharedCache<coupling::GapGeometry> gaps;
   SharedCache<coupling::FactorAnalysis> analyses;
+  SharedCache<RestResponse> rest_responses;
 };
 
 /// Keys over all that a part is made from.

@@ -129,37 +129,52 @@ absl::Status TrialShape::find(const TrialVolumes& volumes, bool from_last) {
   return absl::OkStatus();
 }
 
+/// A tissue beside the plan's, one layer a little thicker, with what it stands on.
+struct TrialShape::ThickerTissue {
+  std::shared_ptr<const model::FaceModel> model;
+  std::unique_ptr<step::CoupledStep> stepper;
+  std::unique_ptr<DirectShape> direct;
+};
+
 std::vector<ShapeSensitivity> TrialShape::find_sensitivities() {
   std::vector<ShapeSensitivity> all;
   if (share_ < 1.0) return all;
   const Simulation::Impl& impl = *simulation_->impl_;
-  equilibrium::Equilibrium& equilibrium = impl.direct->equilibrium();
-  const auto by_volume = equilibrium.differentiate_by_volume();
-  for (size_t k = 0; k < by_volume.size(); ++k) {
-    if (by_volume[k]) all.push_back(describe(ShapeParameter::kPoolVolume, pools_[k].zones, *by_volume[k]));
+  const std::vector<model::TissueLayerSpec>& layers = impl.model->layers;
+  std::vector<ThickerTissue> thicker;
+  std::vector<equilibrium::TissueBeside> beside;
+  std::vector<size_t> layer_of_beside;
+  for (size_t k = 0; k < layers.size(); ++k) {
+    auto made = make_thicker_tissue(static_cast<int>(k));
+    if (!made) continue;
+    thicker.push_back(*std::move(made));
+    beside.push_back({&thicker.back().direct->equilibrium(), kThickening});
+    layer_of_beside.push_back(k);
   }
-  const auto by_modulus = equilibrium.differentiate_by_modulus();
-  for (size_t k = 0; k < by_modulus.size(); ++k) {
-    if (by_modulus[k])
-      all.push_back(describe(ShapeParameter::kLayerModulus, impl.model->layers[k].name, *by_modulus[k]));
-  }
-  for (size_t k = 0; k < impl.model->layers.size(); ++k) {
-    const auto by_thickness = differentiate_by_thickness(static_cast<int>(k));
-    if (by_thickness)
-      all.push_back(describe(ShapeParameter::kLayerThickness, impl.model->layers[k].name, *by_thickness));
+  const equilibrium::Sensitivities found = impl.direct->equilibrium().differentiate(beside);
+  const auto add = [&](ShapeParameter parameter, const std::string& name,
+                       const std::optional<equilibrium::Sensitivity>& sensitivity) {
+    if (sensitivity) all.push_back(describe(parameter, name, *sensitivity));
+  };
+  for (size_t k = 0; k < pools_.size(); ++k) add(ShapeParameter::kPoolVolume, pools_[k].zones, found.by_volume[k]);
+  for (size_t k = 0; k < layers.size(); ++k) add(ShapeParameter::kLayerModulus, layers[k].name, found.by_modulus[k]);
+  for (size_t k = 0; k < beside.size(); ++k) {
+    add(ShapeParameter::kLayerThickness, layers[layer_of_beside[k]].name, found.by_tissue[k]);
   }
   return all;
 }
 
-/// Beside the plan's tissue, one with the layer a little thicker.
-std::optional<equilibrium::Sensitivity> TrialShape::differentiate_by_thickness(int layer) {
-  Simulation::Impl& impl = *simulation_->impl_;
-  const auto model = model::make_thicker(*impl.model, layer, kThickening);
-  auto stepper = step::CoupledStep::create(*model, impl.films, impl.spec);
+std::optional<TrialShape::ThickerTissue> TrialShape::make_thicker_tissue(int layer) const {
+  const Simulation::Impl& impl = *simulation_->impl_;
+  ThickerTissue thicker;
+  thicker.model = model::make_thicker(*impl.model, layer, kThickening);
+  auto stepper = step::CoupledStep::create(*thicker.model, impl.films, impl.spec);
   if (!stepper.ok()) return {};
-  auto beside = DirectShape::create(*model, impl.films, impl.spec, **stepper);
-  if (!beside.ok()) return {};
-  return impl.direct->equilibrium().differentiate_towards((*beside)->equilibrium(), kThickening);
+  thicker.stepper = *std::move(stepper);
+  auto direct = DirectShape::create(*thicker.model, impl.films, impl.spec, *thicker.stepper);
+  if (!direct.ok()) return {};
+  thicker.direct = *std::move(direct);
+  return thicker;
 }
 
 /// A change of the shape as the skin shows it.

@@ -82,7 +82,8 @@ class TrialShape {
  private:
   explicit TrialShape(std::unique_ptr<Simulation> simulation);
   absl::StatusOr<plan::InjectionSchedule> schedule_with(const TrialVolumes& volumes) const;
-  std::optional<equilibrium::Sensitivity> differentiate_by_thickness(int layer);
+  struct ThickerTissue;
+  std::optional<ThickerTissue> make_thicker_tissue(int layer) const;
   ShapeSensitivity describe(ShapeParameter parameter, const std::string& name,
                             const equilibrium::Sensitivity& found) const;
 

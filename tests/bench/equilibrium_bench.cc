@@ -12,7 +12,7 @@ constexpr double kExact = 1e-9;
 /// A drag moves a slider by so much at a time [m3].
 constexpr double kDragStep = 0.1e-6;
 constexpr int kDragSteps = 20;
-constexpr int kMembers = 12;
+constexpr int kMembers = 32;
 /// Moduli of members lie within this factor of the nominal ones.
 constexpr double kLargestModulus = 1.25;
 
@@ -91,32 +91,52 @@ void EquilibriumBench::measure_drag() {
   for (int k = 0; k < kDragSteps; ++k) {
     dragged.volume[0] += k % 10 < 5 ? -kDragStep : kDragStep;
     Stopwatch watch;
-    equilibrium_->follow(dragged, springs_, kTolerance);
+    const equilibrium::Settled found = equilibrium_->follow(dragged, springs_, kTolerance);
     drag_.add(watch.lap());
+    drag_iterations_ += found.cost.iterations;
+    drag_factors_ += found.cost.factors;
   }
 }
 
 void EquilibriumBench::measure_sensitivities() {
   equilibrium_->find(target_, springs_, kTolerance);
   Stopwatch watch;
-  const size_t n = equilibrium_->differentiate_by_volume().size() + equilibrium_->differentiate_by_modulus().size();
+  const equilibrium::Sensitivities found = equilibrium_->differentiate({});
   sensitivity_.add(watch.lap());
-  n_sensitivities_ = static_cast<int>(n);
+  n_sensitivities_ = static_cast<int>(found.by_volume.size() + found.by_modulus.size());
 }
 
+/// Alone, and the same again side by side.
 absl::Status EquilibriumBench::measure_members() {
   equilibrium::Ensemble ensemble(*equilibrium_, target_, springs_, kTolerance);
   const int n_layers = stepper_->system()->n_layers();
+  std::vector<equilibrium::MemberChange> changes;
   for (int k = 0; k < kMembers; ++k) {
-    equilibrium::MemberChange change{Eigen::VectorXd(n_layers), target_.volume};
+    equilibrium::MemberChange& change = changes.emplace_back();
+    change.volumes = target_.volume;
+    change.moduli.resize(n_layers);
     for (int layer = 0; layer < n_layers; ++layer) {
       change.moduli[layer] = std::pow(kLargestModulus, std::sin(1.0 + 3.0 * k + 5.0 * layer));
     }
+  }
+  for (const equilibrium::MemberChange& change : changes) {
     Stopwatch watch;
-    const auto member = ensemble.find(change);
+    const auto alone = ensemble.find({change});
     member_.add(watch.lap());
+    if (const absl::Status status = check_members(alone); !status.ok()) return status;
+  }
+  Stopwatch watch;
+  const auto together = ensemble.find(changes);
+  batch_.add((1.0 / kMembers) * watch.lap());
+  return check_members(together);
+}
+
+absl::Status EquilibriumBench::check_members(const std::vector<absl::StatusOr<equilibrium::Settled>>& members) {
+  for (const auto& member : members) {
     if (!member.ok()) return member.status();
     if (!member->is_whole()) return absl::InternalError("a member has no shape: " + member->reason);
+    member_factors_ += member->cost.factors;
+    member_iterations_ += member->cost.iterations;
   }
   return absl::OkStatus();
 }
@@ -130,9 +150,14 @@ nlohmann::ordered_json EquilibriumBench::to_json() const {
           {"cold_iterations", cold_cost_.iterations},
           {"drag_f", drag_.median_cpu_ms() / unit},
           {"drag_updates_per_s", 1e3 / drag_.mean_cpu_ms()},
+          {"drag_iterations", static_cast<double>(drag_iterations_) / static_cast<double>(drag_.size())},
+          {"drag_factors", drag_factors_},
           {"sensitivity_f", sensitivity_.median_cpu_ms() / unit / std::max(1, n_sensitivities_)},
           {"sensitivities", n_sensitivities_},
           {"ensemble_member_f", member_.median_cpu_ms() / unit},
+          {"ensemble_batch_f", batch_.median_cpu_ms() / unit},
+          {"ensemble_factors", member_factors_},
+          {"ensemble_iterations", 0.5 * member_iterations_ / static_cast<double>(member_.size())},
           {"error_mm", error_mm_}};
 }
 

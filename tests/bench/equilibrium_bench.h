@@ -33,6 +33,7 @@ class EquilibriumBench {
   void measure_drag();
   void measure_sensitivities();
   absl::Status measure_members();
+  absl::Status check_members(const std::vector<absl::StatusOr<equilibrium::Settled>>& members);
 
   int scale_ = 1;
   plan::PlacedPlan placed_;
@@ -45,7 +46,9 @@ class EquilibriumBench {
   double error_mm_ = 0.0;       ///< of the skin, of the shape that is found cold
   equilibrium::SolverCost cold_cost_;
   int n_sensitivities_ = 0;
-  Samples unit_, cold_, drag_, sensitivity_, member_;
+  int drag_iterations_ = 0, drag_factors_ = 0;      ///< of all shapes of drags
+  int member_factors_ = 0, member_iterations_ = 0;  ///< of all members, twice
+  Samples unit_, cold_, drag_, sensitivity_, member_, batch_;
 };
 
 }  // namespace lipofill::bench

@@ -59,6 +59,15 @@ absl::Status refine(int scale, model::FaceModelSpec& model, plan::FilmSpec& film
   return absl::InvalidArgumentError(absl::StrCat("a scale of ", scale, ", must be 1, 4, 16 or 64"));
 }
 
+absl::StatusOr<JawAngle> build(int scale, SampleFace face) {
+  auto model = model::build_face_model(face.model, nullptr);
+  if (!model.ok()) return model.status();
+  plan::SimulationSpec in_steps = face.settled_shape;
+  in_steps.fat_yield_stress = kNegligibleYieldStress;
+  return JawAngle{scale, *std::move(model), std::move(face.simulation), std::move(face.settled_shape),
+                  std::move(in_steps)};
+}
+
 }  // namespace
 
 absl::StatusOr<SampleFace> load_sample_face(int scale) {
@@ -82,12 +91,17 @@ absl::StatusOr<SampleFace> load_sample_face(int scale) {
 absl::StatusOr<JawAngle> make_jaw_angle(int scale) {
   auto face = load_sample_face(scale);
   if (!face.ok()) return face.status();
-  auto model = model::build_face_model(face->model, nullptr);
-  if (!model.ok()) return model.status();
-  plan::SimulationSpec in_steps = face->settled_shape;
-  in_steps.fat_yield_stress = kNegligibleYieldStress;
-  return JawAngle{scale, *std::move(model), std::move(face->simulation), std::move(face->settled_shape),
-                  std::move(in_steps)};
+  return build(scale, *std::move(face));
+}
+
+absl::StatusOr<JawAngle> make_attached_jaw_angle(int scale) {
+  auto face = load_sample_face(scale);
+  if (!face.ok()) return face.status();
+  for (model::TissueLayerSpec& layer : face->model.layers) layer.material.law = solid::TissueLaw::kNeoHookean;
+  for (plan::SimulationSpec* spec : {&face->simulation, &face->settled_shape}) {
+    for (plan::FilmSpec& film : spec->films) film.edge = {};
+  }
+  return build(scale, *std::move(face));
 }
 
 }  // namespace lipofill::bench

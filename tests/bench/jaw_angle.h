@@ -34,5 +34,7 @@ struct JawAngle {
   plan::SimulationSpec settled_in_steps;
 };
 absl::StatusOr<JawAngle> make_jaw_angle(int scale);
+/// The same with neo-Hookean layers and the attachments of the face's regions around the zones.
+absl::StatusOr<JawAngle> make_attached_jaw_angle(int scale);
 
 }  // namespace lipofill::bench

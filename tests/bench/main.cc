@@ -24,10 +24,11 @@ constexpr int kLargestBeside = 16;
 constexpr int kStepsBeyond = 3;
 
 struct Options {
-  std::vector<int> scales = {1, 4, 16};
+  std::vector<int> scales;
   int rounds = 3;
   int steps_a_round = 30;
   int only_plan = 0;
+  int only_shape = 0;
   bool steps_only = false;
   bool is_smoke = false;
   std::string out = "bench.json";
@@ -59,6 +60,11 @@ absl::Status set_up(const Options& options, Findings& findings) {
     if (!equilibrium.ok()) return equilibrium.status();
     findings.equilibria.push_back(*std::move(equilibrium));
   }
+  const auto attached_jaw = make_attached_jaw_angle(options.scales.front());
+  if (!attached_jaw.ok()) return attached_jaw.status();
+  auto attached = EquilibriumBench::create(*attached_jaw);
+  if (!attached.ok()) return attached.status();
+  findings.attached = *std::move(attached);
   return absl::OkStatus();
 }
 
@@ -79,6 +85,7 @@ absl::Status run_rounds(const Options& options, Findings& findings) {
     settled.Update(run_settled(jaw, jaw.settled_shape, findings.settled_shape));
     settled.Update(run_settled(jaw, jaw.settled_in_steps, findings.settled_in_steps));
     for (const auto& equilibrium : findings.equilibria) settled.Update(equilibrium->run_round());
+    settled.Update(findings.attached->run_round());
     if (!settled.ok()) return settled;
     for (const auto& scale : findings.scales) {
       const int repeats = scale->scale() <= 1 ? kRepeatsOfSmallest : 1;
@@ -111,8 +118,24 @@ absl::Status run_only_plan(int times) {
   return status;
 }
 
+/// The settled shape alone, found directly, at each scale.
+absl::Status run_only_shape(const Options& options) {
+  for (const int scale : options.scales) {
+    const auto jaw = make_jaw_angle(scale);
+    if (!jaw.ok()) return jaw.status();
+    const auto bench = EquilibriumBench::create(*jaw);
+    if (!bench.ok()) return bench.status();
+    for (int k = 0; k < options.only_shape; ++k) {
+      if (const absl::Status status = (*bench)->run_round(); !status.ok()) return status;
+    }
+    std::cout << (*bench)->to_json().dump(1) << "\n";
+  }
+  return absl::OkStatus();
+}
+
 absl::Status run(const Options& options) {
   if (options.only_plan > 0) return run_only_plan(options.only_plan);
+  if (options.only_shape > 0) return run_only_shape(options);
   Findings findings;
   for (auto* stage : {+[](const Options&o, Findings&f) { return measure_memory(o, f); },
                       +[](const Options&o, Findings&f) { return set_up(o, f); },
@@ -137,6 +160,8 @@ int main_of(int argc, char** argv) {
   app.add_flag("--steps-only", options.steps_only, "leave out the other ways to solve a step");
   app.add_option("--only-plan", options.only_plan, "run the plan so often and nothing else, for a profiler")
       ->check(CLI::Range(1, 1000));
+  app.add_option("--only-shape", options.only_shape, "find the settled shape in so many rounds and nothing else")
+      ->check(CLI::Range(1, 1000));
   app.add_flag("--smoke", options.is_smoke, "one round on a quarter of the plan's size: does it all work");
   app.add_option("--out", options.out, "where the JSON goes");
   CLI11_PARSE(app, argc, argv);
@@ -145,6 +170,8 @@ int main_of(int argc, char** argv) {
     options.rounds = 1;
     options.steps_a_round = 2;
   }
+  if (options.scales.empty())
+    options.scales = options.only_shape > 0 ? std::vector<int>{1} : std::vector<int>{1, 4, 16};
   if (!options.is_smoke) options.scales.push_back(1);
   std::sort(options.scales.begin(), options.scales.end());
   options.scales.erase(std::unique(options.scales.begin(), options.scales.end()), options.scales.end());

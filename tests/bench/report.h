@@ -21,6 +21,7 @@ struct Findings {
   std::vector<SettledRun> settled_shape;                      ///< each round has one run with that goal
   std::vector<SettledRun> settled_in_steps;                   ///< the same where the plan has to be stepped
   std::vector<std::unique_ptr<EquilibriumBench>> equilibria;  ///< of the scales up to 16
+  std::unique_ptr<EquilibriumBench> attached;                 ///< with neo-Hookean layers and attached edges
   SessionMemory memory;
   nlohmann::ordered_json beyond =
       nlohmann::ordered_json::array();  ///< has scales too large to be held beside the others

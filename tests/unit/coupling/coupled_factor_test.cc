@@ -95,6 +95,28 @@ TEST(CoupledFactor, SolvesEqualTheDenseOnes) {
   }
 }
 
+/// Several at once: whole groups, and what is left of one; whether there are pressures in it or not.
+TEST(CoupledFactor, SolvesManyAsOneByOne) {
+  const Case c(15, 20, 1e4, 1e-5, 5);
+  const Sparse no_cells(0, c.b.cols());
+  for (const Precision precision : kPrecisions) {
+    for (const Sparse& pressures_in_factor : {c.b, no_cells}) {
+      CoupledFactor factor = analyse(c.s_lower, pressures_in_factor);
+      ASSERT_TRUE(factor.factorise(c.s_lower, pressures_in_factor, precision));
+      for (const int n : {1, 7, 8, 9, 16, 21}) {
+        SCOPED_TRACE(n);
+        const Eigen::MatrixXd r = Eigen::MatrixXd::Random(c.s_dense.rows(), n);
+        Eigen::MatrixXd x, again;
+        factor.solve_many(r, x);
+        ASSERT_EQ(x.cols(), n);
+        EXPECT_LT((c.s_dense * x - r).norm() / r.norm(), bound_of(precision));
+        factor.solve_many(r.rightCols(1), again);
+        EXPECT_EQ(again.col(0), x.col(n - 1)) << "whatever is beside it";
+      }
+    }
+  }
+}
+
 TEST(CoupledFactor, WithoutPressuresInItMultipliesByTheCompliance) {
   const Case c(12, 9, 1e4, 1e-5, 7);
   CoupledFactor factor = analyse(c.s_lower, Sparse(0, c.b.cols()));

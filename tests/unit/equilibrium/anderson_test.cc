@@ -55,6 +55,22 @@ TEST(AndersonMixing, CarriesWhatItDoesNotMeasure) {
   EXPECT_LT(error_after(map, 6, 3), 1e-8);
 }
 
+/// Another fixed point of the same map is found from what is known of the map, in two steps.
+TEST(AndersonMixing, KeepsWhatItKnowsOverALeap) {
+  LinearMap map(Eigen::Vector3d(0.9, 0.7, 0.4));
+  AndersonMixing mixing;
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(3), next;
+  const auto step = [&] {
+    mixing.mix(y, map.correction(y), 3, next);
+    y = next;
+  };
+  for (int k = 0; k < 5; ++k) step();
+  map.b *= 1.5;
+  mixing.leap();
+  step();
+  EXPECT_LT((y - map.fixed_point()).norm(), 1e-7 * y.norm());
+}
+
 TEST(AndersonMixing, ForgetsWhenToldTo) {
   const LinearMap map(Eigen::Vector3d(0.9, 0.7, 0.4));
   AndersonMixing fresh, used;

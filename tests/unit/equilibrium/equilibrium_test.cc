@@ -139,7 +139,7 @@ TEST(Equilibrium, DerivativesByModulusAreThoseOfItsShapes) {
   ASSERT_TRUE(equilibrium.ok());
   const PoolTarget target = c.with(0.3 * kMillilitre);
   const Settled before = (*equilibrium)->find(target, c.springs, 1e-3);
-  const auto derivatives = (*equilibrium)->differentiate_by_modulus();
+  const auto derivatives = (*equilibrium)->differentiate({}).by_modulus;
   EXPECT_EQ((*equilibrium)->find(target, c.springs, 1e-3).positions, before.positions);
   ASSERT_EQ(derivatives.size(), static_cast<size_t>(c.system->n_layers()));
   for (int layer = 0; layer < c.system->n_layers(); ++layer) {
@@ -161,6 +161,44 @@ TEST(Equilibrium, DerivativesByModulusAreThoseOfItsShapes) {
     EXPECT_NEAR(derivative->pool_head[0], head, 1e-2 * std::abs(head));
     EXPECT_TRUE(c.system->scale_moduli(Eigen::VectorXd::Ones(c.system->n_layers())).ok());
   }
+}
+
+/// A drag: once its trend is known a shape costs an iteration, or none, and no factor; forces stay
+/// in balance, and volumes exact, however far it goes.
+TEST(Equilibrium, LearnsWhereADragGoes) {
+  SmallEquilibrium c;
+  auto equilibrium = Equilibrium::create(*c.model, c.films, c.cells, *c.system, c.geometry, c.load, c.cost);
+  ASSERT_TRUE(equilibrium.ok());
+  (*equilibrium)->find(c.with(0.3 * kMillilitre), c.springs, 1e-3);
+  const int before = c.cost.factorisations;
+  int iterations = 0;
+  for (int k = 1; k <= 20; ++k) {
+    const PoolTarget target = c.with((0.3 + 0.005 * k) * kMillilitre);
+    const Settled followed = (*equilibrium)->follow(target, c.springs, 1e-3);
+    EXPECT_LE(followed.force_error, 1e-3);
+    EXPECT_NEAR(followed.pool_volume[0], target.volume[0], 1e-12 * target.volume[0]);
+    if (k > 3) iterations += followed.cost.iterations;
+  }
+  EXPECT_LE(iterations, 17);
+  EXPECT_EQ(c.cost.factorisations, before);
+}
+
+/// Who comes second needs one factor less, and finds the same bits.
+TEST(Equilibrium, SharesWhatIsKnownOfTheRest) {
+  SmallEquilibrium c;
+  const auto create = [&c] {
+    return *Equilibrium::create(*c.model, c.films, c.cells, *c.system, c.geometry, c.load, c.cost);
+  };
+  const PoolTarget target = c.with(2.0 * kMillilitre);
+  const auto first = create(), second = create();
+  const Settled alone = first->find(target, c.springs, 1e-3);
+  const Settled again = second->find(target, c.springs, 1e-3);
+  EXPECT_EQ(again.positions, alone.positions);
+  EXPECT_EQ(again.cost.factors, alone.cost.factors - 1);
+  Eigen::VectorXd stiffer = Eigen::VectorXd::Constant(c.system->n_layers(), 1.5);
+  ASSERT_TRUE(c.system->scale_moduli(stiffer).ok());
+  EXPECT_EQ(second->find(target, c.springs, 1e-3).cost.factors, alone.cost.factors)
+      << "another stiffness, another rest";
 }
 
 /// A shape that follows another is the one found from rest, within the tolerance, for less.

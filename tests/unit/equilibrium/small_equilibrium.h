@@ -12,6 +12,8 @@ namespace lipofill::equilibrium {
 
 /// The small plan's tissue and film with the parts of an equilibrium.
 struct SmallEquilibrium : mechanics::SmallSystem {
+  using SmallSystem::SmallSystem;
+
   mechanics::FilmGeometry geometry{model->geometry.grid, films, cells, system.get()};
   Pools pools = find_pools(films, cells);
   StaticLoad load;

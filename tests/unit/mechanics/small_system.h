@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/mechanics/held_factor.h"
@@ -14,7 +15,10 @@ namespace lipofill::mechanics {
 
 /// The tissue of the small plan, with its one film.
 struct SmallSystem {
-  std::shared_ptr<const model::FaceModel> model = simulation::make_small_model();
+  explicit SmallSystem(std::shared_ptr<const model::FaceModel> face = simulation::make_small_model())
+      : model(std::move(face)) {}
+
+  std::shared_ptr<const model::FaceModel> model;
   plan::SimulationSpec spec = simulation::make_small_plan();
   std::vector<plan::FilmLayout> films{*plan::place_film(*model, spec.films[0])};
   FilmCells cells = number_cells(films);

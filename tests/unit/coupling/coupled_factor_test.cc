@@ -95,7 +95,7 @@ TEST(CoupledFactor, SolvesEqualTheDenseOnes) {
   }
 }
 
-/// Several at once: whole groups, and what is left of one; whether there are pressures in it or not.
+/// Several at once: whole groups, and what is left of one, with pressures in the factor or without.
 TEST(CoupledFactor, SolvesManyAsOneByOne) {
   const Case c(15, 20, 1e4, 1e-5, 5);
   const Sparse no_cells(0, c.b.cols());

@@ -25,6 +25,73 @@ describe("a host", () => {
   });
 });
 
+// Each is read as this machine by some library, proxy or browser, and by none must it be here.
+const lookalikes = [
+  "[::1].evil.com",
+  "[::1]evil.com",
+  "[::1].",
+  "[::1%25lo]",
+  "[::1%lo]:80",
+  "[::ffff:127.0.0.1]",
+  "[::ffff:7f00:1]",
+  "[0:0:0:0:0:0:0:1]",
+  "[::127.0.0.1]",
+  "[::]",
+  "::1",
+  "::1:80",
+  "0.0.0.0",
+  "0",
+  "0x7f.1",
+  "0x7f000001",
+  "2130706433",
+  "017700000001",
+  "127.0.0.1.",
+  "127.0.0.1..",
+  "127.0.1",
+  "127.0.0.1%00.evil.com",
+  "127.0.0.1\u0000",
+  "127.0.0.1,evil.com",
+  "127.0.0.1, 127.0.0.1",
+  "127.0.0.1;evil.com",
+  "127.0.0.1#evil.com",
+  "127.0.0.1?evil.com",
+  "127.0.0.1\\evil.com",
+  "127.0.0.1:",
+  "127.0.0.1:80:80",
+  "127.0.0.1:-1",
+  "127.0.0.1:+80",
+  "127.0.0.1:0x50",
+  " 127.0.0.1",
+  "127.0.0.1 ",
+  "127.0.0.1\t",
+  "１２７.0.0.1",
+  "127。0。0。1",
+  "localhost.",
+  "localhost.evil.com",
+  "evil.localhost",
+  "localhost.localdomain",
+  "localhost:80@evil.com",
+  "evil.com@localhost",
+  "user:pass@127.0.0.1",
+  "loc\u0430lhost",
+  "localhoſt",
+  "xn--localhost-",
+  "ip6-localhost",
+  "http://127.0.0.1",
+  "//127.0.0.1",
+  "127.0.0.1/",
+];
+
+describe("a host that looks like this machine", () => {
+  it("is not served", () => {
+    for (const host of lookalikes) expect(status(host), JSON.stringify(host)).toBe(421);
+  });
+  it("is no origin of this machine's page either", () => {
+    for (const host of ["[::1].evil.com", "localhost.evil.com", "evil.localhost", "localhost.", "127.0.0.1.evil.com"])
+      expect(status("localhost", { origin: `http://${host}` }), host).toBe(403);
+  });
+});
+
 describe("a request", () => {
   it("is served on this machine by loopback addresses", () => {
     for (const host of ["127.0.0.1", "127.0.0.1:8080", "localhost:9", "[::1]:8080"])

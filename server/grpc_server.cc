@@ -16,6 +16,7 @@
 #include "server/entry/tls_credentials.h"
 #include "server/ops/listen_address.h"
 #include "server/sessions/draining.h"
+#include "server/sessions/memory_reserve.h"
 #include "spdlog/spdlog.h"
 
 namespace lipofill::server {
@@ -88,6 +89,7 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<
   // Debian builds absl, on whose mutexes gRPC runs, with its search for deadlocks, which takes part
   // in every lock.
   absl::SetMutexDeadlockDetectionMode(absl::OnDeadlockCycle::kIgnore);
+  MemoryReserve::set_up();
   grpc::EnableDefaultHealthCheckService(true);
   // The library is named here so that the linker takes it in.
   grpc::reflection::InitProtoReflectionServerBuilderPlugin();
@@ -112,6 +114,7 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<
   if (auto opened = self->open_door(); !opened.ok()) return opened;
   self->sweeper_ = std::make_unique<Periodic>("sweeper", std::chrono::seconds(1), [gate = &self->gate_, &backend] {
     gate->sweep();
+    MemoryReserve::refill();
     backend.shapes.drop_idle();
   });
   return self;

@@ -5,6 +5,7 @@
 
 #include "absl/status/status.h"
 #include "core/base/unwanted.h"
+#include "server/sessions/memory_reserve.h"
 
 namespace lipofill::server {
 
@@ -13,6 +14,7 @@ namespace lipofill::server {
 template <typename Work>
 absl::Status guarded(Work&& work) {
   try {
+    const MayFail may_fail;
     return work();
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError("out of memory");

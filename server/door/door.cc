@@ -11,6 +11,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <new>
 
 #include "absl/strings/str_cat.h"
 #include "server/door/peer_socket.h"
@@ -127,7 +128,7 @@ void Door::accept_from(size_t listener) {
     } else if (!address.empty() && count_of(address) >= bounds_.connections_per_peer) {
       count(TurnedAway::kPeerFull);
     } else {
-      let_in(std::move(outer), listener, address);
+      let_in_if_room(std::move(outer), listener, address);
     }
   }
 }
@@ -144,6 +145,14 @@ void Door::turn_one_away(size_t listener) {
 size_t Door::count_of(const std::string& peer) const {
   const auto counted = by_peer_.find(peer);
   return counted != by_peer_.end() ? counted->second : 0;
+}
+
+void Door::let_in_if_room(Descriptor outer, size_t listener, const std::string& peer) {
+  try {
+    let_in(std::move(outer), listener, peer);
+  } catch (const std::bad_alloc&) {
+    count(TurnedAway::kNoMemory);
+  }
 }
 
 void Door::let_in(Descriptor outer, size_t listener, const std::string& peer) {

@@ -73,6 +73,7 @@ class Door {
   void accept_from(size_t listener);
   void turn_one_away(size_t listener);
   size_t count_of(const std::string& peer) const;
+  void let_in_if_room(Descriptor outer, size_t listener, const std::string& peer);
   void let_in(Descriptor outer, size_t listener, const std::string& peer);
   void move(uint64_t id, bool is_lost);
   void watch(uint64_t id, Visitor& visitor);

@@ -13,8 +13,10 @@ enum class TurnedAway {
   kNoFiles,   ///< the process or the machine has no descriptor left
   kSilent,    ///< it had not begun within its time
   kHostile,   ///< its frames are no client's
+  kNoMemory,  ///< there is no memory to pass its bytes on
 };
-constexpr std::array<const char*, 5> kTurnedAwayNames = {"full", "peer_full", "no_files", "silent", "hostile"};
+constexpr std::array<const char*, 6> kTurnedAwayNames = {"full",   "peer_full", "no_files",
+                                                         "silent", "hostile",   "no_memory"};
 
 /// Counts of the door, written by its thread and read by any.
 struct DoorFigures {

@@ -11,6 +11,8 @@
 #include "server/entry/method_rules.h"
 #include "server/security/refusals.h"
 #include "server/sessions/draining.h"
+#include "server/sessions/memory_reserve.h"
+#include "server/sessions/shortage.h"
 #include "server/store/record_names.h"
 #include "spdlog/spdlog.h"
 
@@ -69,6 +71,11 @@ AuditEntry audit_entry(const Call& call, const std::string& outcome) {
   return entry;
 }
 
+absl::Status no_memory() {
+  constexpr double kRetryDelayS = 2.0;
+  return shortage("NO_MEMORY", kRetryDelayS, "the daemon is out of memory for the moment; try again");
+}
+
 absl::Status no_resource(const std::string& name) {
   return absl::NotFoundError(absl::StrCat("there is no ", name));
 }
@@ -113,6 +120,7 @@ absl::Status CallGate::admit_by_rule(Call& call, const Metadata& metadata, const
                                                           "the caller's is ", role_name(call.principal.role)));
   }
   if (backend_.stopping && rule->effect == Effect::kBegins) return draining();
+  if (MemoryReserve::is_short() && !rule->makes_room) return no_memory();
   return absl::OkStatus();
 }
 

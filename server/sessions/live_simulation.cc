@@ -7,6 +7,7 @@
 #include "core/base/units.h"
 #include "server/sessions/identifiers.h"
 #include "server/sessions/memory.h"
+#include "server/sessions/memory_reserve.h"
 #include "spdlog/spdlog.h"
 
 namespace lipofill::server {
@@ -158,6 +159,7 @@ void LiveSimulation::capture(const std::vector<std::string>& meshes, const Captu
   std::shared_ptr<const Frame> frame;
   if (!has_frames()) return reply(shown, frame);
   try {
+    const MayFail may_fail;
     shown = topology();
     frame = present_frame(meshes);
   } catch (const std::exception& error) {

@@ -6,6 +6,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "server/sessions/memory_reserve.h"
 
 namespace lipofill::server {
 
@@ -15,6 +16,7 @@ namespace lipofill::server {
 template <typename Work>
 absl::Status guard_session(const std::string& id, Work&& work) {
   try {
+    const MayFail may_fail;
     return work();
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError(absl::StrCat("simulations/", id, ": out of memory"));

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/sessions/draining.h"
+#include "server/sessions/memory_reserve.h"
 
 namespace lipofill::server {
 namespace {
@@ -18,6 +19,7 @@ double seconds_since(ShapeDrag::Clock::time_point begin) {
 template <typename Work>
 absl::Status guard_shape(Work&& work) {
   try {
+    const MayFail may_fail;
     return work();
   } catch (const std::bad_alloc&) {
     return absl::ResourceExhaustedError("out of memory while the shape was found");

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/sessions/identifiers.h"
+#include "server/sessions/memory_reserve.h"
 #include "server/sessions/session_guard.h"
 #include "spdlog/spdlog.h"
 
@@ -75,6 +76,7 @@ WorkerPool::Next SimulationRun::advance_slice(const std::function<void()>& carry
 
 void SimulationRun::advance(bool previews) {
   try {
+    const MayFail may_fail;
     if (previews) return live_.advance_preview();
     live_.advance_step();
     const simulation::Simulation& simulation = *live_.simulation();
@@ -126,6 +128,7 @@ void SimulationRun::pause() {
 void SimulationRun::finish(SimulationState state, std::string reason) {
   live_.clock().stop();
   try {
+    const MayFail may_fail;
     live_.set_state(state, std::move(reason));
     const SessionView& view = live_.figures().latest();
     spdlog::info("simulations/{} is {} after {} steps, {:.3f} s simulated{}{}", id_, state_name(state),

@@ -7,6 +7,7 @@
 
 #include <future>
 #include <thread>
+#include <vector>
 
 #include "server/sessions/shape_desk.h"
 #include "tests/unit/simulation/small_case.h"
@@ -134,6 +135,30 @@ TEST_F(ShapeDragTest, ACallersFifthDragTakesThePlaceOfTheOneThatRestedLongest) {
   ASSERT_TRUE(ask("b", Asked(0.3 * kMillilitre), "bert").status.ok());
   const Answer refused = ask("c", Asked(0.3 * kMillilitre), "bert");
   EXPECT_TRUE(absl::IsResourceExhausted(refused.status)) << "six are all that fit: " << refused.status;
+}
+
+TEST_F(ShapeDragTest, ACallerWaitsForSomeShapesWithoutADragAndOthersForTheirs) {
+  SessionManager many({.simulations = 20});
+  WorkerPool workers(1, 1);
+  ShapeDesk desk(workers, many);
+  const auto gate = std::make_shared<Gate>();
+  workers.schedule(gate, "other");
+  gate->begun.get_future().wait();
+  std::vector<Asked> waiting;
+  for (size_t k = 0; k < ShapeDesk::kMostLone; ++k) {
+    desk.ask("clinic", "anna", "", waiting.emplace_back(0.3 * kMillilitre).request);
+  }
+  Asked further(0.3 * kMillilitre), of_another(0.3 * kMillilitre);
+  desk.ask("clinic", "anna", "", further.request);
+  const absl::Status refused = further.wait().status;
+  EXPECT_TRUE(absl::IsResourceExhausted(refused)) << refused;
+  desk.ask("clinic", "bert", "", of_another.request);
+  gate->open.set_value();
+  for (Asked& asked : waiting) EXPECT_TRUE(asked.wait().status.ok());
+  EXPECT_TRUE(of_another.wait().status.ok());
+  Asked later(0.3 * kMillilitre);
+  desk.ask("clinic", "anna", "", later.request);
+  EXPECT_TRUE(later.wait().status.ok()) << "those that were answered count no more";
 }
 
 TEST_F(ShapeDragTest, RestingDragsGiveTheirRoomBack) {

@@ -97,6 +97,7 @@ BackendOptions backend_options(const Options& options) {
   backend.keepalive_s = options.keepalive_s;
   backend.keepalive_timeout_s = options.keepalive_timeout_s;
   backend.max_viewers = options.max_viewers;
+  backend.viewer_bytes = options.viewer_memory_mb * 1'000'000;
   backend.checkpoints.interval_s = options.checkpoint_interval_s;
   backend.checkpoints.kept = options.checkpoints_kept;
   backend.reserve_bytes = options.space_reserve_mb * 1'000'000;

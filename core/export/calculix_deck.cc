@@ -377,6 +377,18 @@ absl::StatusOr<CalculixDeck> CalculixDeck::create(const simulation::Simulation& 
   return create(simulation.model(), simulation.spec(), pressures);
 }
 
+size_t CalculixDeck::memory_bytes() const {
+  const solid::HexMesh& mesh = content_->held.split.mesh;
+  const size_t of_node = 3 * sizeof(double) + sizeof(std::array<bool, 3>) + sizeof(double) + 4 * sizeof(int);
+  const size_t of_hexahedron = sizeof(mesh.hexahedra[0]) + 2 * sizeof(int);
+  size_t bytes = static_cast<size_t>(mesh.n_nodes()) * of_node + mesh.hexahedra.size() * of_hexahedron +
+                 content_->attachments.size() * sizeof(Attachment);
+  for (const FilmWalls& walls : content_->films) {
+    bytes += (walls.outer.size() + walls.inner.size()) * sizeof(LoadedFace);
+  }
+  return bytes;
+}
+
 std::string CalculixDeck::read(size_t max_bytes) {
   std::string text;
   const std::vector<Section>& sections = content_->sections;

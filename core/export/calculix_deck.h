@@ -50,6 +50,9 @@ class CalculixDeck {
 
   static constexpr size_t kLongestLine = 512;
 
+  /// Roughly what the deck takes in memory, whose text is made as it is read.
+  size_t memory_bytes() const;
+
  private:
   struct Content;
   explicit CalculixDeck(std::unique_ptr<Content> content);

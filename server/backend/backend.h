@@ -35,6 +35,7 @@ struct BackendOptions {
   double keepalive_s = 30.0;
   double keepalive_timeout_s = 20.0;
   int max_viewers = 1000;
+  uint64_t viewer_bytes = uint64_t{512} << 20;  ///< frames that they have yet to read
   CheckpointOptions checkpoints;
   uint64_t reserve_bytes = 0;  ///< room that is kept back for deletions
 };

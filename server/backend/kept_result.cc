@@ -3,6 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "core/base/hash.h"
+#include "server/sessions/shown_bytes.h"
 #include "server/store/record_names.h"
 
 namespace lipofill::server {
@@ -10,7 +11,9 @@ namespace {
 
 /// Makes the key from the content: a simulation of the same name may have been deleted and run
 /// anew.
-std::string make_key(const SimulationResult& result, const Selection& selection) {
+std::string make_key(const SimulationResult& result, Selection selection) {
+  sort_out(selection.meshes);
+  sort_out(selection.fields);
   Hasher hasher;
   for (const std::string& message : {result.meshes_message, result.frame_message}) {
     hasher.add(message.size());
@@ -33,9 +36,9 @@ absl::StatusOr<Selection> choose(const v1::MeshSlice& meshes, const v1::FrameSli
   return viewer.selection();
 }
 
-absl::StatusOr<std::shared_ptr<const KeptMessages>> encode(const SimulationResult& result,
-                                                           const std::string& simulation,
-                                                           const ViewerOptions& options) {
+using Encoded = absl::StatusOr<std::shared_ptr<const KeptMessages>>;
+
+Encoded encode(const SimulationResult& result, const std::string& simulation, const ViewerOptions& options) {
   v1::MeshSlice meshes;
   v1::FrameSlice frame;
   if (!meshes.ParseFromString(result.meshes_message) || !frame.ParseFromString(result.frame_message)) {
@@ -56,7 +59,10 @@ absl::StatusOr<std::shared_ptr<const KeptMessages>> KeptResults::show(const std:
                                                                       const ViewerOptions& options) {
   const auto result = store_.get_result(simulation);
   if (!result.ok()) return result.status();
-  return shown_.get(make_key(*result, options.selection), [&] { return encode(*result, simulation, options); });
+  return shown_.get(make_key(*result, options.selection), [&]() -> Encoded {
+    if (shown_bytes() > options.max_shown_bytes) return too_many_shown(options.max_shown_bytes);
+    return encode(*result, simulation, options);
+  });
 }
 
 }  // namespace lipofill::server

@@ -3,6 +3,7 @@
 #include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/server_context.h>
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -28,6 +29,7 @@ struct Call {
   /// call that nobody has looked at is refused.
   absl::Status refusal = absl::PermissionDeniedError("the call was not admitted");
   CallGate* gate = nullptr;
+  uint64_t number = 0;                      ///< among the live calls
   std::vector<std::string> resources = {};  ///< that its request names, once it was checked
   std::string made = {};                    ///< the name of what it made
   bool begun = false;                       ///< the audit log has it

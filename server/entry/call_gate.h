@@ -26,7 +26,10 @@ class CallGate {
  public:
   /// `audit` may be nullptr: nothing is written down then.
   CallGate(Backend& backend, const Authenticator& authenticator, AuditLog* audit)
-      : backend_(backend), authenticator_(authenticator), audit_(audit) {}
+      : backend_(backend),
+        authenticator_(authenticator),
+        audit_(audit),
+        live_calls_({.shown = backend.options.viewer_bytes}) {}
 
   /// Admits a call by its metadata, before there is a request, and fills in who calls.
   /// UNAUTHENTICATED, PERMISSION_DENIED, or draining().

@@ -3,6 +3,7 @@
 #include <grpcpp/support/server_callback.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -11,7 +12,8 @@
 namespace lipofill::server {
 
 /// Sends messages that were made beforehand one after the other, as long as the caller is known and
-/// takes them. It deletes itself once gRPC is done with it.
+/// takes them. What they take is counted (LiveCalls), and let go of as they are sent. It deletes
+/// itself once gRPC is done with it.
 /// Checked by tests/integration/service/shape_test.cc and the tests of downloads.
 template <typename Message>
 class PreparedStream : public grpc::ServerWriteReactor<Message> {
@@ -20,6 +22,9 @@ class PreparedStream : public grpc::ServerWriteReactor<Message> {
 
   /// @param messages  at least one
   void send(std::vector<Message> messages) {
+    uint64_t bytes = 0;
+    for (const Message& message : messages) bytes += message.ByteSizeLong();
+    if (const absl::Status room = keep_answers(context_, bytes); !room.ok()) return fail(room);
     messages_ = std::move(messages);
     this->StartWrite(&messages_[0]);
   }

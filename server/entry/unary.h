@@ -3,6 +3,7 @@
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
+#include <cstdint>
 #include <functional>
 #include <utility>
 
@@ -32,6 +33,10 @@ absl::Status check_call(grpc::CallbackServerContext* context, const Request& req
   Call& call = call_of(context);
   if (call.gate == nullptr) return call.refusal;
   if (const absl::Status admitted = call.gate->check_admitted(call, request); !admitted.ok()) return admitted;
+  if (const absl::Status room = call.gate->live_calls().keep_request(call.number, request.SpaceUsedLong());
+      !room.ok()) {
+    return room;
+  }
   if (const absl::Status known = check_message(request); !known.ok()) return known;
   return call.gate->check(call, request);
 }
@@ -41,6 +46,13 @@ inline absl::Status check_still_known(grpc::CallbackServerContext* context) {
   return call_of(context).principal.has_expired() ? token_expired() : absl::OkStatus();
 }
 
+/// Counts answers of a stream that are made before the first is sent: RESOURCE_EXHAUSTED without
+/// room for them.
+inline absl::Status keep_answers(grpc::CallbackServerContext* context, uint64_t bytes) {
+  const Call& call = call_of(context);
+  return call.gate == nullptr ? call.refusal : call.gate->live_calls().keep_answers(call.number, bytes);
+}
+
 /// Answers a call at once. `work` fills the response and returns a status.
 template <typename Request, typename Work>
 grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, const Request* request, Work&& work) {
@@ -48,6 +60,20 @@ grpc::ServerUnaryReactor* answer(grpc::CallbackServerContext* context, const Req
   const LogScope scope(call_of(context).log_fields());
   const absl::Status valid = check_call(context, *request);
   reactor->Finish(to_grpc_status(valid.ok() ? guarded(work) : valid));
+  return reactor;
+}
+
+/// Answers a call at once, or leaves that to somebody: `work` is given the reactor, and a flag that
+/// it sets before it hands that on. It looks for what the request names only here, once the call
+/// was checked, so that what is another's is not looked for longer than what is absent.
+template <typename Request, typename Work>
+grpc::ServerUnaryReactor* answer_or_leave(grpc::CallbackServerContext* context, const Request* request, Work&& work) {
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  const LogScope scope(call_of(context).log_fields());
+  bool is_left = false;
+  absl::Status done = check_call(context, *request);
+  if (done.ok()) done = guarded([&] { return work(reactor, is_left); });
+  if (!is_left) reactor->Finish(to_grpc_status(done));
   return reactor;
 }
 

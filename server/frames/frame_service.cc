@@ -56,7 +56,7 @@ Courier::Clock::duration heartbeat_of(const v1::WatchRequest& request) {
   return std::chrono::ceil<Courier::Clock::duration>(std::chrono::duration<double, std::milli>(period_ms));
 }
 
-absl::StatusOr<ViewerOptions> to_viewer_options(const v1::WatchRequest& request) {
+absl::StatusOr<ViewerOptions> to_viewer_options(const v1::WatchRequest& request, const BackendOptions& bounds) {
   constexpr double kMaxInterval = 1e9;
   FieldViolations violations;
   violations.check_range("interval_ms", request.interval_ms(), 0.0, kMaxInterval, "ms");
@@ -76,6 +76,7 @@ absl::StatusOr<ViewerOptions> to_viewer_options(const v1::WatchRequest& request)
   options.interval_s = request.interval_ms() * 1e-3;
   options.seen_epoch = request.seen_epoch();
   options.seen_sequence = request.seen_sequence();
+  options.max_shown_bytes = bounds.viewer_bytes;
   return options;
 }
 
@@ -145,7 +146,7 @@ std::shared_ptr<void> FrameService::take_place() {
 
 absl::Status FrameService::watch_session(const v1::WatchRequest& request, const std::shared_ptr<Session>& session,
                                          const std::shared_ptr<WatchStream>& stream) {
-  const auto options = to_viewer_options(request);
+  const auto options = to_viewer_options(request, backend_.options);
   if (!options.ok()) return options.status();
   const std::weak_ptr<WatchStream> target = stream;
   const auto viewer = std::make_shared<Viewer>(*options, [target] {
@@ -188,7 +189,7 @@ grpc::ServerUnaryReactor* FrameService::AcknowledgeFrame(grpc::CallbackServerCon
 
 absl::Status FrameService::watch_kept(const v1::WatchRequest& request, const std::string& id,
                                       const std::shared_ptr<WatchStream>& stream) {
-  const auto options = to_viewer_options(request);
+  const auto options = to_viewer_options(request, backend_.options);
   if (!options.ok()) return options.status();
   const auto shown = kept_.show(id, *options);
   if (!shown.ok()) return shown.status();

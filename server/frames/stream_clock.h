@@ -35,6 +35,8 @@ class StreamClock {
     if (wall_end_ != WallTime::max()) alarm_ = std::min(*alarm_, now + kLook);
     return alarm_;
   }
+  /// An alarm at this time takes the place of the one that is set.
+  void replace_alarm(Time time) { alarm_ = time; }
   /// The stream was woken: an alarm whose time has come is over.
   void note_woken(Time now) {
     if (alarm_ && *alarm_ <= now) alarm_.reset();

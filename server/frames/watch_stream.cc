@@ -1,11 +1,20 @@
 #include "server/frames/watch_stream.h"
 
+#include <chrono>
 #include <exception>
 
 #include "server/security/refusals.h"
+#include "server/sessions/memory_reserve.h"
+#include "server/sessions/shown_bytes.h"
 #include "server/wire/status_mapping.h"
 
 namespace lipofill::server {
+namespace {
+
+/// A stream that is held back looks again after so long.
+constexpr std::chrono::milliseconds kHeldBack{100};
+
+}  // namespace
 
 bool WatchStream::begin(std::shared_ptr<Viewer> viewer, Courier::Clock::duration heartbeat,
                         std::function<void()> on_done) {
@@ -90,8 +99,10 @@ void WatchStream::advance(std::unique_lock<std::mutex> lock) {
     outgoing_.clear();
   } else if (outgoing_.empty() && !end_) {
     try {
-      fetch();
+      const MayFail may_fail;
+      const bool is_held_back = !fetch();
       if (outgoing_.empty() && !end_) send_due_heartbeat();
+      if (is_held_back) look_again_at(Courier::Clock::now() + kHeldBack);
     } catch (const std::exception& error) {
       end_ = absl::ResourceExhaustedError(error.what());
     }
@@ -109,7 +120,10 @@ void WatchStream::advance(std::unique_lock<std::mutex> lock) {
   }
 }
 
-void WatchStream::fetch() {
+/// False, and nothing is fetched, where frames take too much: those who read wait until those who
+/// do not are ended (LiveCalls).
+bool WatchStream::fetch() {
+  if (viewer_ != nullptr && shown_bytes() > viewer_->max_shown_bytes()) return false;
   while (outgoing_.empty() && !end_ && viewer_ != nullptr) {
     const ToSend next = viewer_->take();
     if (const auto* meshes = std::get_if<TopologyToSend>(&next)) {
@@ -119,9 +133,15 @@ void WatchStream::fetch() {
     } else if (const auto* end = std::get_if<EndOfStream>(&next)) {
       end_ = end->status;
     } else {
-      return;
+      return true;
     }
   }
+  return true;
+}
+
+void WatchStream::look_again_at(Courier::Clock::time_point time) {
+  clock_.replace_alarm(time);
+  courier_.wake_at(weak_from_this(), time);
 }
 
 /// Sends a heartbeat if one is due. Otherwise the courier looks again when it will be, or when the

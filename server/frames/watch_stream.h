@@ -58,8 +58,9 @@ class WatchStream : public grpc::ServerWriteReactor<grpc::ByteBuffer>,
 
  private:
   void advance(std::unique_lock<std::mutex> lock);
-  void fetch();
+  bool fetch();
   void send_due_heartbeat();
+  void look_again_at(Courier::Clock::time_point time);
 
   Courier& courier_;
   std::shared_ptr<void> place_;

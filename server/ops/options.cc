@@ -180,7 +180,8 @@ uint64_t machine_memory_mb() {
 
 Options::Options()
     : workers(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u))),
-      simulation_memory_mb(std::max<uint64_t>(64, machine_memory_mb() / 2)) {}
+      simulation_memory_mb(std::max<uint64_t>(64, machine_memory_mb() / 2)),
+      viewer_memory_mb(std::max<uint64_t>(64, machine_memory_mb() / 8)) {}
 
 std::vector<Setting> settings_of(Options& options) {
   std::vector<Setting> settings = {
@@ -213,6 +214,10 @@ std::vector<Setting> settings_of(Options& options) {
       {"max-running", "N", "Simulations that share the workers; more wait in a queue until one of them ends or pauses",
        &options.max_running, 1, 100000},
       {"max-viewers", "N", "Streams of frames that may be open at once", &options.max_viewers, 1, 1e6},
+      {"viewer-memory-mb", "MB",
+       "What frames that viewers have yet to read may take together; beyond it the slowest viewers are ended; default: "
+       "an eighth of the machine's memory",
+       &options.viewer_memory_mb, 64, 1e8},
       {"self-check-s", "SECONDS",
        "The daemon connects to its own addresses this often; health says NOT_SERVING while it cannot",
        &options.self_check_s, 0.1, 3600},

@@ -39,6 +39,7 @@ struct Options {
   double keepalive_s = 30.0;
   double keepalive_timeout_s = 20.0;
   int max_viewers = 1000;
+  uint64_t viewer_memory_mb;
   double checkpoint_interval_s = 10.0;
   int checkpoints_kept = 3;
   uint64_t checkpoint_space_mb = 8192;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/simulation/simulation.h"
+#include "server/sessions/shown_bytes.h"
 
 namespace lipofill::server {
 
@@ -16,20 +17,25 @@ namespace lipofill::server {
 struct EncodedMessages {
   std::string topology_hash;
   std::vector<std::string> messages;
+  ShownBytes counted = {};
 };
 
 /// Encodings of one thing, one for each set of meshes, made by whoever needs it first and shared by
-/// all viewers.
+/// all viewers. Of more than kMostKept those that nobody sends are made again when they are wanted:
+/// there are as many as subsets of fields.
 class EncodingCache {
  public:
   using Encoder = std::function<EncodedMessages()>;
+  static constexpr size_t kMostKept = 4;
 
   /// The encoding under `key`; others that ask for it meanwhile wait.
   std::shared_ptr<const EncodedMessages> get(const std::string& key, const Encoder& encode) const {
     const std::lock_guard lock(mutex_);
-    auto& entry = entries_[key];
-    if (entry == nullptr) entry = std::make_shared<const EncodedMessages>(encode());
-    return entry;
+    if (const auto found = entries_.find(key); found != entries_.end()) return found->second;
+    if (entries_.size() >= kMostKept) {
+      std::erase_if(entries_, [](const auto& entry) { return entry.second.use_count() == 1; });
+    }
+    return entries_[key] = std::make_shared<const EncodedMessages>(encode());
   }
 
  private:

@@ -16,9 +16,14 @@ absl::Status FrameQueue::push(std::shared_ptr<const Frame> frame) {
                      max_bytes_, " bytes; read faster, set interval_ms, or watch with LATEST"));
     clear();
     return overflow;
+  } else if (!frames_.empty() && shown_bytes() + bytes > max_shown_) {
+    absl::Status overflow = too_many_shown(max_shown_);
+    clear();
+    return overflow;
   }
   frames_.push_back(std::move(frame));
   bytes_ += bytes;
+  count();
   return absl::OkStatus();
 }
 
@@ -33,12 +38,14 @@ FrameToSend FrameQueue::pop() {
   FrameToSend next{std::move(frames_.front()), std::exchange(skipped_, 0)};
   frames_.pop_front();
   bytes_ -= next.frame->size_bytes();
+  count();
   return next;
 }
 
 void FrameQueue::clear() {
   frames_.clear();
   bytes_ = 0;
+  count();
 }
 
 }  // namespace lipofill::server

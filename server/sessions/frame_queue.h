@@ -6,6 +6,7 @@
 
 #include "absl/status/status.h"
 #include "server/sessions/frame.h"
+#include "server/sessions/shown_bytes.h"
 
 namespace lipofill::server {
 
@@ -24,7 +25,10 @@ struct FrameToSend {
 class FrameQueue {
  public:
   /// @param max_bytes  of the fields that wait, kEvery
-  FrameQueue(Delivery delivery, size_t max_bytes) : delivery_(delivery), max_bytes_(max_bytes) {}
+  /// @param max_shown  of all viewers, shown_bytes(): beyond it none may have a frame wait behind
+  /// another, kEvery
+  FrameQueue(Delivery delivery, size_t max_bytes, uint64_t max_shown = UINT64_MAX)
+      : delivery_(delivery), max_bytes_(max_bytes), max_shown_(max_shown) {}
 
   bool empty() const { return frames_.empty(); }
   const Frame& front() const { return *frames_.front(); }
@@ -37,11 +41,14 @@ class FrameQueue {
 
  private:
   void skip_waiting();
+  void count() { counted_ = ShownBytes(bytes_); }
 
   const Delivery delivery_;
   const size_t max_bytes_;
+  const uint64_t max_shown_;
   std::deque<std::shared_ptr<const Frame>> frames_;
   size_t bytes_ = 0;
+  ShownBytes counted_;  ///< bytes_
   uint64_t skipped_ = 0;
 };
 

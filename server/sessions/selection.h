@@ -25,4 +25,11 @@ inline std::string mesh_of(const std::string& array) {
   return array.substr(0, array.rfind('.'));
 }
 
+/// Sorts the names and drops repeated ones, so that viewers who ask for the same in another order
+/// share what is made for them.
+inline void sort_out(std::vector<std::string>& names) {
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+}
+
 }  // namespace lipofill::server

@@ -13,13 +13,6 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Sorts the names and drops repeated ones, so that viewers who ask for the same in another order
-/// share what is made for them.
-void sort_out(std::vector<std::string>& names) {
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-}
-
 std::vector<std::string> default_meshes(const std::vector<std::string>& known, const std::vector<std::string>& fields) {
   std::vector<std::string> meshes;
   const auto is_shown = [&fields](const std::string& mesh) {
@@ -36,7 +29,7 @@ Viewer::Viewer(ViewerOptions options, std::function<void()> wake)
     : options_(std::move(options)),
       wake_(std::move(wake)),
       selection_(options_.selection),
-      frames_(options_.delivery, options_.max_queued_bytes),
+      frames_(options_.delivery, options_.max_queued_bytes, options_.max_shown_bytes),
       pace_(options_.interval_s, options_.max_rate_hz, options_.shares_rate),
       acknowledgements_(options_.max_unacknowledged) {
   sort_out(selection_.fields);

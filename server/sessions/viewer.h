@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -28,6 +29,7 @@ struct ViewerOptions {
   uint64_t seen_epoch = 0;
   uint64_t seen_sequence = 0;
   size_t max_queued_bytes = size_t{64} << 20;  ///< kEvery
+  uint64_t max_shown_bytes = UINT64_MAX;       ///< of all viewers (shown_bytes.h)
   size_t max_unacknowledged = 0;               ///< frames on their way; 0: no bound
 };
 
@@ -74,6 +76,7 @@ class Viewer {
   absl::Status check_fields(const std::vector<std::string>& known) const;
   const Selection& selection() const { return selection_; }
   bool shares_rate() const { return options_.shares_rate; }
+  uint64_t max_shown_bytes() const { return options_.max_shown_bytes; }
   void set_max_rate(double max_rate_hz);
 
   /// Notes that the client has taken the frame of this sequence and all before it. INVALID_ARGUMENT

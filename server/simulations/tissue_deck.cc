@@ -30,8 +30,8 @@ class DeckStream : public grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>
   explicit DeckStream(grpc::CallbackServerContext* context) : context_(context) {}
 
   void send(TimedDeck deck) {
+    if (const absl::Status room = keep_answers(context_, deck.deck.memory_bytes()); !room.ok()) return fail(room);
     deck_.emplace(std::move(deck));
-    piece_.set_time_s(deck_->time_s);
     send_next();
   }
   void fail(const absl::Status& status) { Finish(to_grpc_status(status)); }
@@ -46,6 +46,7 @@ class DeckStream : public grpc::ServerWriteReactor<v1::ExportTissueDeckResponse>
  private:
   void send_next() {
     const absl::Status made = guarded([this] {
+      piece_.set_time_s(deck_->time_s);
       piece_.set_data(deck_->deck.read(kMaxPieceBytes));
       return absl::OkStatus();
     });

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -48,6 +49,13 @@ v1::ArraySlice cut(const v1::ArraySlice& whole, size_t offset, size_t bytes) {
   piece.set_offset_bytes(offset);
   piece.set_data(whole.data().data() + offset, bytes);
   return piece;
+}
+
+EncodedMessages counted(EncodedMessages encoded) {
+  uint64_t bytes = 0;
+  for (const std::string& message : encoded.messages) bytes += message.size();
+  encoded.counted = ShownBytes(bytes);
+  return encoded;
 }
 
 std::string cache_key(const Selection& selection) {
@@ -166,17 +174,17 @@ std::vector<v1::MeshSlice> slice_meshes(const v1::MeshSlice& whole) {
 }
 
 EncodedMessages encode_meshes(const v1::MeshSlice& whole) {
-  EncodedMessages encoded{whole.topology_hash(), {}};
+  EncodedMessages encoded{whole.topology_hash(), {}, {}};
   for (v1::MeshSlice& slice : slice_meshes(whole)) {
     v1::WatchResponse response;
     response.mutable_mesh()->Swap(&slice);
     encoded.messages.push_back(response.SerializeAsString());
   }
-  return encoded;
+  return counted(std::move(encoded));
 }
 
 EncodedMessages encode_frame(const v1::FrameSlice& whole) {
-  EncodedMessages encoded{whole.topology_hash(), {}};
+  EncodedMessages encoded{whole.topology_hash(), {}, {}};
   const auto pieces = slice_arrays(whole.fields());
   for (size_t i = 0; i < pieces.size(); ++i) {
     v1::FrameSlice slice;
@@ -190,7 +198,7 @@ EncodedMessages encode_frame(const v1::FrameSlice& whole) {
     for (const v1::ArraySlice& array : pieces[i]) *slice.add_fields() = array;
     encoded.messages.push_back(slice.SerializeAsString());
   }
-  return encoded;
+  return counted(std::move(encoded));
 }
 
 // WatchResponse { frame { skipped_frames: n, <body> } }: fields of a message may come in any order.

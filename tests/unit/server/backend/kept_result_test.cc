@@ -77,6 +77,14 @@ TEST_F(KeptResultTest, ThoseWhoAskForTheSameShareTheMessages) {
   EXPECT_EQ(frame_of(**anew).sequence(), 7u) << "another simulation of the same name";
 }
 
+TEST_F(KeptResultTest, InWhateverOrderTheyAskForIt) {
+  const std::string pressure = "film/plane.pressure", thickness = "film/plane.thickness";
+  const auto first = results_.show("a", options({"film/plane"}, {pressure, thickness}));
+  const auto second = results_.show("a", options({"film/plane"}, {thickness, pressure, thickness}));
+  ASSERT_TRUE(first.ok() && second.ok()) << first.status() << second.status();
+  EXPECT_EQ(*first, *second);
+}
+
 TEST_F(KeptResultTest, NamesWhatThereIsNot) {
   EXPECT_TRUE(absl::IsNotFound(results_.show("b", options({})).status()));
   const auto mesh = results_.show("a", options({"skin", "bone"}));

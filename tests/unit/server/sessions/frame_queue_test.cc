@@ -44,6 +44,20 @@ TEST(FrameQueue, EveryKeepsAllUpToTheBound) {
   EXPECT_TRUE(queue.empty());
 }
 
+TEST(FrameQueue, EveryKeepsUpWhereAllViewersTogetherHaveTooMuch) {
+  const uint64_t before = shown_bytes();
+  FrameQueue queue(Delivery::kEvery, 1000, before + 100);
+  ASSERT_TRUE(queue.push(frame(1)).ok());
+  ASSERT_TRUE(queue.push(frame(2)).ok());
+  EXPECT_EQ(shown_bytes(), before + 80);
+  const ShownBytes of_others(60);
+  EXPECT_TRUE(absl::IsResourceExhausted(queue.push(frame(3))));
+  EXPECT_EQ(shown_bytes(), before + 60) << "nothing waits any more";
+  EXPECT_TRUE(queue.push(frame(4)).ok()) << "one that reads is not behind";
+  queue.pop();
+  EXPECT_TRUE(queue.push(frame(5)).ok());
+}
+
 TEST(FrameQueue, AClearedQueueHasRoomAgain) {
   FrameQueue queue(Delivery::kEvery, 40);
   ASSERT_TRUE(queue.push(frame(1)).ok());

@@ -136,18 +136,17 @@ Reactor* SimulationService::CheckPlan(Context* context, const v1::CheckPlanReque
 
 Reactor* SimulationService::GetSimulation(Context* context, const v1::GetSimulationRequest* request,
                                           v1::Simulation* response) {
-  const auto id = parse_simulation_name(request->name(), "name");
-  const absl::Status masked = check_field_mask(request->read_mask(), *v1::Simulation::descriptor(), "read_mask");
-  const auto session = id.ok() && masked.ok() ? backend_.sessions.find(*id) : nullptr;
-  if (session != nullptr && check_call(context, *request).ok()) {
-    Reactor* reactor = context->DefaultReactor();
-    session->inspect(reply_to(backend_, *id, reactor, response,
-                              [mask = request->read_mask()](v1::Simulation& shown) { apply_field_mask(mask, shown); }));
-    return reactor;
-  }
-  return answer(context, request, [&]() -> absl::Status {
+  return answer_or_leave(context, request, [&](Reactor* reactor, bool& is_left) -> absl::Status {
+    const auto id = parse_simulation_name(request->name(), "name");
     if (!id.ok()) return id.status();
-    if (!masked.ok()) return masked;
+    const auto& mask = request->read_mask();
+    if (auto good = check_field_mask(mask, *v1::Simulation::descriptor(), "read_mask"); !good.ok()) return good;
+    if (const auto session = backend_.sessions.find(*id); session != nullptr) {
+      is_left = true;
+      session->inspect(
+          reply_to(backend_, *id, reactor, response, [mask](v1::Simulation& shown) { apply_field_mask(mask, shown); }));
+      return absl::OkStatus();
+    }
     const auto record = backend_.store.get_simulation(*id);
     if (record.ok()) *response = show_without_session(backend_, *record);
     apply_field_mask(request->read_mask(), *response);
@@ -206,19 +205,19 @@ Reactor* SimulationService::StopSimulation(Context* context, const v1::StopSimul
 
 Reactor* SimulationService::DeleteSimulation(Context* context, const v1::DeleteSimulationRequest* request,
                                              google::protobuf::Empty*) {
-  const auto id = parse_simulation_name(request->name(), "name");
-  const auto session = id.ok() ? backend_.sessions.hold(*id) : nullptr;
-  if (session != nullptr && check_call(context, *request).ok()) {
-    Reactor* reactor = context->DefaultReactor();
-    session->abandon(
-        [this, id = *id, etag = request->etag()] { return delete_simulation_record(backend_, id, etag); },
-        [reactor](const absl::StatusOr<SessionView>& view) { reactor->Finish(to_grpc_status(view.status())); });
-    return reactor;
-  }
-  return answer(context, request, [&] {
+  return answer_or_leave(context, request, [&](Reactor* reactor, bool& is_left) -> absl::Status {
+    const auto id = parse_simulation_name(request->name(), "name");
+    if (!id.ok()) return id.status();
+    if (const auto session = backend_.sessions.hold(*id); session != nullptr) {
+      is_left = true;
+      session->abandon(
+          [this, id = *id, etag = request->etag()] { return delete_simulation_record(backend_, id, etag); },
+          [reactor](const absl::StatusOr<SessionView>& view) { reactor->Finish(to_grpc_status(view.status())); });
+      return absl::OkStatus();
+    }
     // No simulation may be woken meanwhile.
     const std::lock_guard lock(backend_.waking);
-    return id.ok() ? delete_simulation_record(backend_, *id, request->etag()) : id.status();
+    return delete_simulation_record(backend_, *id, request->etag());
   });
 }
 

@@ -146,6 +146,12 @@ bool RawHttp2::read(SeenFrameHeader& frame, double timeout_s) {
   return true;
 }
 
+std::vector<SeenFrameHeader> RawHttp2::read_all(double patience_s) {
+  std::vector<SeenFrameHeader> frames;
+  for (SeenFrameHeader frame; read(frame, patience_s);) frames.push_back(frame);
+  return frames;
+}
+
 bool RawHttp2::skim() {
   while (true) {
     pollfd readable = {socket_, POLLIN, 0};

@@ -55,6 +55,8 @@ class RawHttp2 {
   bool send(std::string_view bytes, double timeout_s = 10.0);
   /// The next frame; false when none comes within the time or the connection has ended.
   bool read(SeenFrameHeader& frame, double timeout_s = 10.0);
+  /// The frames that come, for so long as there is one within the time.
+  std::vector<SeenFrameHeader> read_all(double patience_s);
   /// Reads and forgets what has come; false once the connection has ended.
   bool skim();
 

@@ -71,6 +71,13 @@ AuditEntry audit_entry(const Call& call, const std::string& outcome) {
   return entry;
 }
 
+/// Whether all that is kept back is there, or could be put back.
+bool has_memory() {
+  if (!MemoryReserve::is_short()) return true;
+  MemoryReserve::refill();
+  return !MemoryReserve::is_short();
+}
+
 absl::Status no_memory() {
   constexpr double kRetryDelayS = 2.0;
   return shortage("NO_MEMORY", kRetryDelayS, "the daemon is out of memory for the moment; try again");
@@ -120,7 +127,7 @@ absl::Status CallGate::admit_by_rule(Call& call, const Metadata& metadata, const
                                                           "the caller's is ", role_name(call.principal.role)));
   }
   if (backend_.stopping && rule->effect == Effect::kBegins) return draining();
-  if (MemoryReserve::is_short() && !rule->makes_room) return no_memory();
+  if (!rule->makes_room && !has_memory()) return no_memory();
   return absl::OkStatus();
 }
 
@@ -131,6 +138,8 @@ absl::Status CallGate::check_admitted(Call& call, const google::protobuf::Messag
 
 absl::Status CallGate::check(Call& call, const google::protobuf::Message& request) {
   if (call.principal.has_expired()) return token_expired();
+  // An upload goes on with message after message, which were read already.
+  if (const MethodRule* rule = rule_of(call.method); !rule->makes_room && !has_memory()) return no_memory();
   const ResourceNames names = resource_names_in(request);
   if (names.size() > kMostResources) {
     return absl::InvalidArgumentError(

@@ -82,6 +82,11 @@ v1::Simulation to_simulation(const SimulationRecord& record, const SessionView* 
     simulation.set_queue_position(static_cast<uint32_t>(view->queue_position));
   }
   simulation.set_reason(view != nullptr ? view->reason : record.reason);
+  if (view != nullptr && !view->unkept.empty()) {
+    simulation.set_reason(
+        absl::StrCat(view->reason, view->reason.empty() ? "" : "; ",
+                     "the result is not kept yet, and would be computed again if the daemon died: ", view->unkept));
+  }
   if (view != nullptr) {
     *simulation.mutable_summary() = to_summary(*view);
     simulation.set_viewers(static_cast<uint32_t>(view->viewers));

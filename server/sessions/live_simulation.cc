@@ -200,6 +200,7 @@ absl::Status LiveSimulation::keep_result() {
   absl::Status kept = series_.flush();
   if (kept.ok()) kept = sink_.ended(id_, figures_.copy(), *topology_, *last_frame_);
   result_kept_ = kept.ok();
+  figures_.set_unkept(kept.ok() ? "" : std::string(kept.message()));
   return kept;
 }
 

@@ -35,6 +35,11 @@ void SessionFigures::set_reason(std::string reason) {
   view_.reason = std::move(reason);
 }
 
+void SessionFigures::set_unkept(std::string unkept) {
+  const std::lock_guard lock(mutex_);
+  view_.unkept = std::move(unkept);
+}
+
 void SessionFigures::set_catching_up(std::optional<uint64_t> until_step) {
   const std::lock_guard lock(mutex_);
   view_.catching_up_to = until_step;

@@ -27,6 +27,7 @@ class SessionFigures {
   const SessionView& latest() const { return view_; }
   void set_state(SimulationState state, std::string reason);
   void set_reason(std::string reason);
+  void set_unkept(std::string unkept);
   void set_catching_up(std::optional<uint64_t> until_step);
   void set_preview(const std::optional<PreviewView>& preview);
   void set_discretisation(std::optional<absl::StatusOr<simulation::DiscretisationError>> error);

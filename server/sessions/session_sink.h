@@ -42,6 +42,8 @@ struct PreviewView {
 struct SessionView {
   SimulationState state = SimulationState::kReady;
   std::string reason;
+  /// The reason why the result of one that has ended is not in the store yet; empty: it is.
+  std::string unkept;
   simulation::StepReport report;
   std::vector<simulation::ZoneReport> zones;
   std::vector<simulation::LigamentReport> ligaments;

@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using Simulations = v1::SimulationService::Stub;
 
 class FaultTest : public RunTest {
@@ -123,7 +124,9 @@ TEST_F(FaultTest, AResultThatFoundNoRoomIsKeptLater) {
   fill_disk(true);
   const v1::Simulation ended = await_end("simulations/x");
   EXPECT_EQ(ended.state(), v1::Simulation::FINISHED);
+  EXPECT_THAT(get_simulation("simulations/x").reason(), HasSubstr("the result is not kept yet"));
   fill_disk(false);
+  EXPECT_THAT(get_simulation("simulations/x").reason(), Not(HasSubstr("the result is not kept yet")));
   EXPECT_EQ(get_simulation("simulations/x").summary().state_hash(), ended.summary().state_hash());
   restart_hard();
   const v1::Simulation kept = get_simulation("simulations/x");

@@ -28,6 +28,11 @@ void ChaosDaemon::kill_twice_and_restart(std::chrono::milliseconds lifetime) {
   start();
 }
 
+int ChaosDaemon::port() const {
+  const std::string address = process_->address();
+  return std::stoi(address.substr(address.find(':') + 1));
+}
+
 std::shared_ptr<grpc::Channel> ChaosDaemon::channel() const {
   const std::lock_guard lock(mutex_);
   return channel_;

@@ -27,6 +27,10 @@ class ChaosDaemon {
   void kill_twice_and_restart(std::chrono::milliseconds lifetime);
 
   std::shared_ptr<grpc::Channel> channel() const;
+  // Of the one that lives, for whoever kills and starts it.
+  pid_t pid() const { return process_->pid(); }
+  int port() const;
+  bool lives() const { return process_->wait(0.001) == -1 && process_->running(); }
   const std::string& data() const { return data_; }
 
  private:
@@ -39,10 +43,13 @@ class ChaosDaemon {
   std::shared_ptr<grpc::Channel> channel_;
 };
 
-/// Whether a call was not answered: the daemon died, or is not there yet.
+/// Whether a call was not answered: the daemon died, or is not there yet; or was not carried out,
+/// for want of room, memory or descriptors.
 inline bool is_unanswered(const grpc::Status& status) {
   return status.error_code() == grpc::StatusCode::UNAVAILABLE ||
-         status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED || status.error_code() == grpc::StatusCode::UNKNOWN;
+         status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED ||
+         status.error_code() == grpc::StatusCode::UNKNOWN ||
+         status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;
 }
 
 /// Calls again and again, with the same request, until there is an answer.

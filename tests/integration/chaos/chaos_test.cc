@@ -1,6 +1,8 @@
 // The daemon is killed with SIGKILL at seeded random moments while clients create, steer, keep,
 // restore and delete simulations, watch them and upload scans; between two lives files are taken
-// away, replaced by older ones and spoilt by a bit. What clients were told must hold.
+// away, replaced by older ones and spoilt by a bit. While it lives, its disk runs full, descriptors
+// and memory run out, its clock is set, it stands still, and strangers flood it or do not read what
+// they ask for. What clients were told must hold.
 // LIPOFILL_CHAOS_KILLS and LIPOFILL_CHAOS_SEED say how often and in which order (deploy/chaos),
 // LIPOFILL_CHAOS_KEEP where to leave data and log when it fails.
 
@@ -17,6 +19,7 @@
 #include "tests/integration/chaos/meddler.h"
 #include "tests/integration/chaos/planner.h"
 #include "tests/integration/chaos/spectator.h"
+#include "tests/integration/chaos/tormentor.h"
 #include "tests/integration/chaos/uploader.h"
 #include "tests/integration/service/service_fixture.h"
 
@@ -75,12 +78,35 @@ void check_files(const std::string& data) {
   }
 }
 
+/// Daemons that are started as long as it is there have a clock that can be set, and allocations
+/// that can be made to fail.
+class OtherLibraries {
+ public:
+  explicit OtherLibraries(Tormentor::Files files) : files_(std::move(files)) {
+#ifdef LIPOFILL_TEST_LIBRARIES
+    ::setenv("LIPOFILL_TEST_CLOCK", files_.clock.c_str(), 1);
+    ::setenv("LIPOFILL_TEST_SCARCE", files_.scarce.c_str(), 1);
+    ::setenv("LD_PRELOAD", LIPOFILL_TEST_LIBRARIES, 1);
+#endif
+  }
+  ~OtherLibraries() {
+    ::unsetenv("LD_PRELOAD");
+  }
+  const Tormentor::Files& files() const {
+    return files_;
+  }
+
+ private:
+  const Tormentor::Files files_;
+};
+
 TEST(Chaos, WhatWasAcknowledgedHoldsHoweverOftenTheDaemonIsKilled) {
   const uint64_t kills = number_from_environment("LIPOFILL_CHAOS_KILLS", kKillsInCi);
   const uint64_t seed = number_from_environment("LIPOFILL_CHAOS_SEED", 1);
   SCOPED_TRACE(absl::StrCat("LIPOFILL_CHAOS_SEED=", seed, " LIPOFILL_CHAOS_KILLS=", kills));
   std::mt19937_64 random(seed);
   TemporaryDirectory directory;
+  const OtherLibraries libraries({directory.file("clock"), directory.file("scarce")});
   ChaosDaemon daemon(directory.file("data"), {"--checkpoint-interval-s", "0.05", "--log-level", "info"});
   std::vector<std::unique_ptr<Planner>> planners;
   for (int i = 0; i < kPlanners; ++i) {
@@ -90,6 +116,7 @@ TEST(Chaos, WhatWasAcknowledgedHoldsHoweverOftenTheDaemonIsKilled) {
   Spectator spectator(daemon, [&] { return planners[0]->present(); });
 
   Meddler meddler(daemon.data(), random());
+  Tormentor tormentor(daemon, random(), libraries.files());
 
   std::atomic<bool> stop = false;
   std::vector<std::thread> threads;
@@ -98,6 +125,9 @@ TEST(Chaos, WhatWasAcknowledgedHoldsHoweverOftenTheDaemonIsKilled) {
   threads.emplace_back([&] { spectator.run(stop); });
   for (uint64_t kill = 0; kill < kills && !HasFailure(); ++kill) {
     std::this_thread::sleep_for(std::chrono::milliseconds(random() % 400));
+    if (random() % 2 == 0) tormentor.torment();
+    EXPECT_TRUE(daemon.lives()) << "it may only be killed by us, after " << tormentor.last();
+    if (random() % 2 == 0) tormentor.let_go();
     if (random() % 5 == 0 && ++kill < kills) {
       daemon.kill_twice_and_restart(std::chrono::milliseconds(random() % 100));
     } else if (random() % 2 == 0) {
@@ -123,7 +153,11 @@ TEST(Chaos, WhatWasAcknowledgedHoldsHoweverOftenTheDaemonIsKilled) {
   std::cout << kills << " kills, seed " << seed << ": " << commands << " commands acknowledged, " << results
             << " results equal to an unbroken run, " << uploader.complete() << " scans, " << spectator.frames()
             << " frames in " << spectator.epochs() << " epochs; " << meddler.removed() << " checkpoints removed, "
-            << meddler.replaced() << " replaced by others, " << meddler.flipped() << " bits flipped\n";
+            << meddler.replaced() << " replaced by others, " << meddler.flipped() << " bits flipped";
+  for (size_t i = 0; i < kTormentNames.size(); ++i) {
+    std::cout << "; " << kTormentNames[i] << ": " << tormentor.count(static_cast<Torment>(i));
+  }
+  std::cout << "\n";
   if (const char* keep = std::getenv("LIPOFILL_CHAOS_KEEP"); keep != nullptr && HasFailure()) {
     std::filesystem::copy(directory.path(), keep, std::filesystem::copy_options::recursive);
   }

@@ -263,8 +263,11 @@ void Planner::end_it() {
 
 v1::Simulation Planner::await_end(const std::string& name) {
   v1::Simulation simulation = get(name);
-  while ((simulation.state() < v1::Simulation::SETTLED || simulation.state() == v1::Simulation::QUEUED) &&
-         !::testing::Test::HasFailure()) {
+  const auto is_over = [&simulation] {
+    const bool is_kept = simulation.reason().find("the result is not kept yet") == std::string::npos;
+    return is_kept && simulation.state() >= v1::Simulation::SETTLED && simulation.state() != v1::Simulation::QUEUED;
+  };
+  while (!is_over() && !::testing::Test::HasFailure()) {
     pause_for(5);
     simulation = get(name);
   }

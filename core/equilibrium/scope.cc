@@ -36,7 +36,8 @@ Found in_ligaments(const std::vector<mechanics::LigamentLayout>& ligaments) {
     if (!std::isfinite(ligaments[k].breaking_force)) continue;
     return Hindrance{absl::StrCat("ligaments[", k, "].breaking_force_n"),
                      absl::StrCat("is ", ligaments[k].breaking_force, " N: whether '", ligaments[k].name,
-                                  "' breaks depends on the pressure on the way")};
+                                  "' breaks depends on the pressure on the way"),
+                     true};
   }
   return {};
 }
@@ -56,8 +57,8 @@ Found in_time(const plan::SimulationSpec& spec, double injected_until) {
 
 std::optional<Hindrance> find_hindrance(const plan::SimulationSpec& spec, const model::FaceModel& model,
                                         const std::vector<plan::FilmLayout>& films,
-                                        const std::vector<mechanics::LigamentLayout>& ligaments,
-                                        double injected_until) {
+                                        const std::vector<mechanics::LigamentLayout>& ligaments, double injected_until,
+                                        bool is_injected) {
   if (model.layers.empty()) return Hindrance{"model", "has no layers: no tissue comes to rest"};
   if (spec.coupling == plan::CouplingMode::kLumped) {
     return Hindrance{"coupling", "is LUMPED: it spreads the gap over the cells as the way there has it"};
@@ -69,7 +70,7 @@ std::optional<Hindrance> find_hindrance(const plan::SimulationSpec& spec, const 
   for (size_t f = 0; f < films.size(); ++f) {
     if (const Found found = in_film(spec, films[f], absl::StrCat("films[", f, "]"))) return found;
   }
-  if (const Found found = in_ligaments(ligaments)) return found;
+  if (const Found found = in_ligaments(ligaments); found && !is_injected) return found;
   return in_time(spec, injected_until);
 }
 

@@ -15,6 +15,9 @@ namespace lipofill::equilibrium {
 struct Hindrance {
   std::string field;  ///< of lipofill.v1.SimulationSpec, for example "fat.yield_stress_pa"
   std::string why;    ///< a clause with the field as its subject
+  /// The way matters while fat is injected alone: a plan that is stepped so far may be finished
+  /// directly.
+  bool ends_with_injection = false;
 
   std::string text() const { return field + " " + why; }
 };
@@ -29,8 +32,10 @@ struct Hindrance {
 /// @param films      of the plan, placed
 /// @param ligaments  of the plan, placed: those with a name have their breaking force from there
 /// @param injected_until  the last injection ends then [s]
+/// @param is_injected     it has: what hinders until then is passed over
 std::optional<Hindrance> find_hindrance(const plan::SimulationSpec& spec, const model::FaceModel& model,
                                         const std::vector<plan::FilmLayout>& films,
-                                        const std::vector<mechanics::LigamentLayout>& ligaments, double injected_until);
+                                        const std::vector<mechanics::LigamentLayout>& ligaments, double injected_until,
+                                        bool is_injected);
 
 }  // namespace lipofill::equilibrium

@@ -47,11 +47,13 @@ std::optional<Hindrance> DirectShape::find_hindrance(const model::FaceModel& mod
                                                      const std::vector<plan::FilmLayout>& films,
                                                      const plan::SimulationSpec& spec,
                                                      const plan::InjectionSchedule& schedule,
-                                                     const SimulationState& rest, const step::CoupledStep& stepper) {
+                                                     const SimulationState& rest, const step::CoupledStep& stepper,
+                                                     bool is_injected) {
   const mechanics::TissueSetup* tissue = stepper.tissue();
   auto found = equilibrium::find_hindrance(
       spec, model, films, tissue != nullptr ? tissue->ligaments : std::vector<mechanics::LigamentLayout>(),
-      schedule.end());
+      schedule.end(), is_injected);
+  if (is_injected) return found;
   return found.has_value() ? found : find_overdraft(films, stepper.cells(), schedule, rest);
 }
 
@@ -81,6 +83,17 @@ equilibrium::Settled DirectShape::follow(const SimulationState& from, const std:
       equilibrium_->follow(target_with(from, injected), from.spring_is_intact, kForceTolerance);
   fill(from, settled, next);
   return settled;
+}
+
+std::optional<std::string> DirectShape::find_breaking_ligament(
+    const std::vector<mechanics::LigamentLayout>& ligaments) const {
+  const solid::Tissue& tissue = equilibrium_->parts().system.tissue();
+  for (const mechanics::LigamentLayout& ligament : ligaments) {
+    for (int k = 0; k < ligament.n_springs; ++k) {
+      if (tissue.spring_tension(ligament.first_spring + k) > ligament.breaking_force) return ligament.name;
+    }
+  }
+  return {};
 }
 
 equilibrium::PoolTarget DirectShape::target_with(const SimulationState& from,

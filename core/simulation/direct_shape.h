@@ -19,13 +19,14 @@ namespace lipofill::simulation {
 class DirectShape {
  public:
   /// The first field of the plan that forbids it, nothing where the settled shape can be found so.
-  /// @param rest  the state that the plan begins with
+  /// @param rest         the state that the plan begins with
+  /// @param is_injected  all of it is in: what hinders until then is passed over
   static std::optional<equilibrium::Hindrance> find_hindrance(const model::FaceModel& model,
                                                               const std::vector<plan::FilmLayout>& films,
                                                               const plan::SimulationSpec& spec,
                                                               const plan::InjectionSchedule& schedule,
                                                               const mechanics::SimulationState& rest,
-                                                              const step::CoupledStep& stepper);
+                                                              const step::CoupledStep& stepper, bool is_injected);
 
   /// For a plan that nothing forbids. Errors as Equilibrium::create. What is passed here outlives
   /// the shape.
@@ -42,6 +43,8 @@ class DirectShape {
   /// The same from the last shape (Equilibrium::follow).
   equilibrium::Settled follow(const mechanics::SimulationState& from, const std::vector<Eigen::VectorXd>& injected,
                               mechanics::SimulationState& next);
+  /// The first ligament that breaks at the last shape, where it holds until then.
+  std::optional<std::string> find_breaking_ligament(const std::vector<mechanics::LigamentLayout>& ligaments) const;
   /// What finds them.
   equilibrium::Equilibrium& equilibrium() { return *equilibrium_; }
 

@@ -10,16 +10,23 @@
 
 namespace lipofill::simulation {
 
-/// Decides whether the plan is solved directly, and says why not.
+/// Decides whether the plan is solved directly, or finished so, and says why not.
 void Simulation::Impl::decide_way() {
-  settles_directly = false;
+  settles_directly = finishes_directly = false;
   if (spec.goal == plan::TimeGoal::kTransient) {
     report.way = "in steps: time.goal is TRANSIENT";
     return;
   }
-  const auto hindrance = DirectShape::find_hindrance(*model, films, spec, schedule, state, *stepper);
+  const auto find_hindrance = [&](bool is_injected) {
+    return DirectShape::find_hindrance(*model, films, spec, schedule, state, *stepper, is_injected);
+  };
+  const auto hindrance = find_hindrance(false);
   settles_directly = !hindrance.has_value();
-  report.way = settles_directly ? "directly" : absl::StrCat("in steps: ", hindrance->text());
+  finishes_directly = hindrance && hindrance->ends_with_injection && !find_hindrance(true);
+  report.way = settles_directly
+                   ? "directly"
+                   : absl::StrCat("in steps", finishes_directly ? " until all is injected, then directly" : "", ": ",
+                                  hindrance->text());
 }
 
 absl::Status Simulation::Impl::make_direct() {
@@ -48,6 +55,32 @@ bool Simulation::Impl::settle() {
     return false;
   }
   become(settled, std::move(next), end);
+  return true;
+}
+
+/// True at the first state with all injections over, on whichever way it was come by.
+bool Simulation::Impl::is_just_injected() const {
+  return state.time >= schedule.end() && state.time - state.last_step < schedule.end();
+}
+
+/// The settled shape of what has been injected in steps, with the ligaments that hold. False where
+/// there is none, or where one of them breaks in it; the plan is then stepped on.
+bool Simulation::Impl::finish() {
+  if (const absl::Status made = make_direct(); !made.ok()) {
+    fail(std::string(made.message()));
+    return true;
+  }
+  for (size_t f = 0; f < films.size(); ++f) injected[f].setZero();
+  mechanics::SimulationState next;
+  const equilibrium::Settled settled = direct->find(state, injected, next);
+  const auto breaking = direct->find_breaking_ligament(stepper->tissue()->ligaments);
+  if (!settled.is_whole() || breaking) {
+    report.way =
+        absl::StrCat("in steps: ", settled.is_whole() ? absl::StrCat("'", *breaking, "' breaks after all is injected")
+                                                      : absl::StrCat("no equilibrium was found, ", settled.reason));
+    return false;
+  }
+  become(settled, std::move(next), state.time + spec.step);
   return true;
 }
 

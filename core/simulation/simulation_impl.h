@@ -28,6 +28,7 @@ struct Simulation::Impl {
   std::unique_ptr<step::CoupledStep> stepper;
   bool settles_directly = false;        ///< the settled shape is found in place of steps
   bool is_direct = true;                ///< all steps so far were to settled shapes
+  bool finishes_directly = false;       ///< it is so once all is injected in steps
   std::unique_ptr<DirectShape> direct;  ///< made when it is
   mechanics::SimulationState state;
   Phase phase = Phase::kRunning;
@@ -45,6 +46,8 @@ struct Simulation::Impl {
   void advance();
   void decide_way();
   bool settle();
+  bool is_just_injected() const;
+  bool finish();
   absl::Status make_direct();
   void become(const equilibrium::Settled& settled, mechanics::SimulationState next, double time);
   void end_path(const equilibrium::Settled& settled);

@@ -60,7 +60,8 @@ absl::StatusOr<std::unique_ptr<TrialShape>> TrialShape::create(std::shared_ptr<c
   // When a run of the plan would end does not matter to a shape at rest.
   impl.spec.settle_skin_speed = std::max(impl.spec.settle_skin_speed, std::numeric_limits<double>::min());
   impl.spec.end = std::numeric_limits<double>::infinity();
-  const auto hindrance = DirectShape::find_hindrance(*impl.model, impl.films, impl.spec, {}, impl.state, *impl.stepper);
+  const auto hindrance =
+      DirectShape::find_hindrance(*impl.model, impl.films, impl.spec, {}, impl.state, *impl.stepper, false);
   if (hindrance) return has_to_be_stepped(hindrance->text());
   if (const absl::Status made = impl.make_direct(); !made.ok()) return made;
   return std::unique_ptr<TrialShape>(new TrialShape(*std::move(simulation)));
@@ -103,7 +104,7 @@ absl::Status TrialShape::find(const TrialVolumes& volumes, bool from_last) {
   auto schedule = schedule_with(volumes);
   if (!schedule.ok()) return schedule.status();
   const auto hindrance =
-      DirectShape::find_hindrance(*impl.model, impl.films, impl.spec, *schedule, *rest_, *impl.stepper);
+      DirectShape::find_hindrance(*impl.model, impl.films, impl.spec, *schedule, *rest_, *impl.stepper, false);
   if (hindrance) return has_to_be_stepped(hindrance->text());
   impl.stepper->reset_cost();
   const double end = std::max(schedule->end(), impl.spec.step);

@@ -15,7 +15,8 @@ namespace {
 using geometry::ChartPoint;
 
 /// The field that forbids the small plan, changed; empty: nothing does.
-std::string find_field(const std::function<void(plan::SimulationSpec&)>& change, double breaking_force = -1.0) {
+std::string find_field(const std::function<void(plan::SimulationSpec&)>& change, double breaking_force = -1.0,
+                       bool is_injected = false) {
   const auto model = simulation::make_small_model();
   plan::SimulationSpec spec = simulation::make_small_plan();
   change(spec);
@@ -28,10 +29,11 @@ std::string find_field(const std::function<void(plan::SimulationSpec&)>& change,
   std::vector<mechanics::LigamentLayout> ligaments;
   if (breaking_force > 0.0) ligaments = {{"first", 0, 1, std::numeric_limits<double>::infinity()}};
   if (breaking_force > 0.0) ligaments.push_back({"second", 1, 1, breaking_force});
-  const auto found = find_hindrance(spec, *model, films, ligaments, 0.3);
+  const auto found = find_hindrance(spec, *model, films, ligaments, 0.3, is_injected);
   if (found.has_value()) {
     EXPECT_EQ(found->text(), found->field + " " + found->why);
     EXPECT_GT(found->why.size(), 20u) << "says why";
+    EXPECT_EQ(found->ends_with_injection, found->field.starts_with("ligaments")) << found->field;
   }
   return found.has_value() ? found->field : "";
 }
@@ -52,6 +54,13 @@ TEST(Scope, YieldStressIsNot) {
 TEST(Scope, TissueToBeEnteredIsNot) {
   EXPECT_EQ(find_field([](auto& spec) { spec.films[0].connective_tissue.entry_pressure = 100.0; }),
             "films[0].connective_tissue.entry_pressure_pa");
+}
+
+/// Once all is injected; a yield stress still does.
+TEST(Scope, LigamentsForbidItUntilAllIsInjected) {
+  EXPECT_EQ(find_field([](auto&) {}, 0.5), "ligaments[1].breaking_force_n");
+  EXPECT_EQ(find_field([](auto&) {}, 0.5, true), "");
+  EXPECT_EQ(find_field([](auto& spec) { spec.fat_yield_stress = 1.0; }, 0.5, true), "fat.yield_stress_pa");
 }
 
 TEST(Scope, LumpedCouplingIsNot) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/model/thicker_model.h"
+
 namespace lipofill::bench {
 namespace {
 
@@ -26,6 +28,8 @@ absl::StatusOr<std::unique_ptr<EquilibriumBench>> EquilibriumBench::create(const
 
 absl::Status EquilibriumBench::set_up(const JawAngle& jaw) {
   scale_ = jaw.scale;
+  model_ = jaw.model;
+  spec_ = jaw.settled_shape;
   if (auto placed = plan::place_plan(*jaw.model, jaw.settled_shape, nullptr, placed_); !placed.ok()) return placed;
   auto stepper = step::CoupledStep::create(*jaw.model, placed_.films, jaw.settled_shape);
   if (!stepper.ok()) return stepper.status();
@@ -57,6 +61,7 @@ absl::Status EquilibriumBench::run_round() {
   measure_cold();
   measure_drag();
   measure_sensitivities();
+  if (const absl::Status built = measure_thicker_tissue(); !built.ok()) return built;
   return measure_members();
 }
 
@@ -104,6 +109,16 @@ void EquilibriumBench::measure_sensitivities() {
   const equilibrium::Sensitivities found = equilibrium_->differentiate({});
   sensitivity_.add(watch.lap());
   n_sensitivities_ = static_cast<int>(found.by_volume.size() + found.by_modulus.size());
+}
+
+/// Building what a member with another thickness stands on.
+absl::Status EquilibriumBench::measure_thicker_tissue() {
+  Stopwatch watch;
+  const auto model = model::make_thicker(*model_, 0, 0.05);
+  const auto stepper = step::CoupledStep::create(*model, placed_.films, spec_);
+  if (!stepper.ok()) return stepper.status();
+  thicker_.add(watch.lap());
+  return absl::OkStatus();
 }
 
 /// Alone, and the same again side by side.
@@ -154,6 +169,7 @@ nlohmann::ordered_json EquilibriumBench::to_json() const {
           {"drag_factors", drag_factors_},
           {"sensitivity_f", sensitivity_.median_cpu_ms() / unit / std::max(1, n_sensitivities_)},
           {"sensitivities", n_sensitivities_},
+          {"thicker_tissue_f", thicker_.median_cpu_ms() / unit},
           {"ensemble_member_f", member_.median_cpu_ms() / unit},
           {"ensemble_batch_f", batch_.median_cpu_ms() / unit},
           {"ensemble_factors", member_factors_},

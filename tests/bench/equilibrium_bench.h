@@ -32,10 +32,13 @@ class EquilibriumBench {
   void measure_cold();
   void measure_drag();
   void measure_sensitivities();
+  absl::Status measure_thicker_tissue();
   absl::Status measure_members();
   absl::Status check_members(const std::vector<absl::StatusOr<equilibrium::Settled>>& members);
 
   int scale_ = 1;
+  std::shared_ptr<const model::FaceModel> model_;
+  plan::SimulationSpec spec_;
   plan::PlacedPlan placed_;
   std::unique_ptr<step::CoupledStep> stepper_;
   std::unique_ptr<mechanics::TissueFactor> factor_;
@@ -48,7 +51,7 @@ class EquilibriumBench {
   int n_sensitivities_ = 0;
   int drag_iterations_ = 0, drag_factors_ = 0;      ///< of all shapes of drags
   int member_factors_ = 0, member_iterations_ = 0;  ///< of all members, twice
-  Samples unit_, cold_, drag_, sensitivity_, member_, batch_;
+  Samples unit_, cold_, drag_, sensitivity_, member_, batch_, thicker_;
 };
 
 }  // namespace lipofill::bench

@@ -84,7 +84,7 @@ void print_equilibria(const Json& report, std::ostream& out) {
   }
   out << "\n";
   for (const char* key : {"unit_ms", "cold_f", "cold_factors", "cold_iterations", "drag_f", "drag_updates_per_s",
-                          "sensitivity_f", "ensemble_member_f", "ensemble_batch_f", "error_mm"}) {
+                          "sensitivity_f", "thicker_tissue_f", "ensemble_member_f", "ensemble_batch_f", "error_mm"}) {
     out << "  " << std::left << std::setw(kNameWidth) << key << std::right;
     for (const Json& at : report.at("equilibria")) put(out, at.at(key));
     out << "\n";

@@ -218,7 +218,9 @@ absl::StatusOr<std::vector<SimulationRecord>> SqliteStore::list_unended_simulati
 
 absl::StatusOr<uint64_t> SqliteStore::begin_epoch(const std::string& id, int64_t now_us) {
   const std::lock_guard lock(mutex_);
-  Query update(*database_, "UPDATE simulations SET epoch = max(epoch + 1, ?) WHERE id = ? RETURNING epoch");
+  // The first epoch is the time at which the simulation was made.
+  Query update(*database_,
+               "UPDATE simulations SET epoch = max(epoch + 1, create_time_us + 1, ?) WHERE id = ? RETURNING epoch");
   update.bind(now_us, id);
   const bool known = update.next();
   const uint64_t epoch = known ? update.unsigned_integer(0) : 0;

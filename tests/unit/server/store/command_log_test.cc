@@ -188,6 +188,11 @@ TEST_F(CommandLogTest, HoldsOnToWhatASimulationBeganFrom) {
 }
 
 TEST_F(CommandLogTest, EpochsOnlyRise) {
+  SimulationRecord made;
+  made.id = "made";
+  made.create_time_us = 5000;
+  ASSERT_TRUE(store_->create_simulation(made, {}).ok());
+  EXPECT_EQ(*store_->begin_epoch("made", 10), 5001u) << "its first is the time when it was made";
   const uint64_t first = *store_->begin_epoch("x", 1000);
   EXPECT_EQ(first, 1000u);
   EXPECT_EQ(*store_->begin_epoch("x", 500), 1001u) << "the clock went back";

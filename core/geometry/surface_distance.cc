@@ -210,10 +210,10 @@ DistanceStatistics compute_distance_statistics(const std::vector<double>& distan
   return statistics;
 }
 
-absl::StatusOr<VolumeBetween> compute_volume_between(const SurfaceMesh& patch, const SurfaceMesh& surface,
-                                                     const Unwanted& unwanted) {
-  VolumeBetween volume;
-  if (patch.triangles.empty() || surface.triangles.empty()) return volume;
+absl::StatusOr<std::vector<VolumeBetween>> compute_volumes_between(const SurfaceMesh& patch, const SurfaceMesh& surface,
+                                                                   const Unwanted& unwanted) {
+  std::vector<VolumeBetween> volumes(patch.triangles.size());
+  if (patch.triangles.empty() || surface.triangles.empty()) return volumes;
   Patience patience(unwanted);
   const SurfaceLocator locator(surface);
   const DistanceSigner signer(surface);
@@ -225,7 +225,9 @@ absl::StatusOr<VolumeBetween> compute_volume_between(const SurfaceMesh& patch, c
     motion.col(v) = nearest.position - patch.points.col(v);
     distance.push_back(signer.sign(nearest, patch.points.col(v)));
   }
-  for (const auto& t : patch.triangles) {
+  for (size_t i = 0; i < patch.triangles.size(); ++i) {
+    const auto& t = patch.triangles[i];
+    VolumeBetween& volume = volumes[i];
     MovingTriangle moving;
     std::array<double, 3> distances{};
     for (int k = 0; k < 3; ++k) {
@@ -235,16 +237,28 @@ absl::StatusOr<VolumeBetween> compute_volume_between(const SurfaceMesh& patch, c
     }
     const auto [least, most] = std::minmax_element(distances.begin(), distances.end());
     if (*least >= 0.0 || *most <= 0.0) {
-      (*least >= 0.0 ? volume.excess : volume.deficit) += moving.swept_volume();
+      (*least >= 0.0 ? volume.excess : volume.deficit) = moving.swept_volume();
       continue;
     }
     const double outside = mean_of_positive_part(distances);
     const double inside = outside - (distances[0] + distances[1] + distances[2]) / 3.0;
     const double area = moving.area_at(0.5).norm();
-    volume.excess += area * outside;
-    volume.deficit += area * inside;
+    volume.excess = area * outside;
+    volume.deficit = area * inside;
   }
-  return volume;
+  return volumes;
+}
+
+absl::StatusOr<VolumeBetween> compute_volume_between(const SurfaceMesh& patch, const SurfaceMesh& surface,
+                                                     const Unwanted& unwanted) {
+  const auto volumes = compute_volumes_between(patch, surface, unwanted);
+  if (!volumes.ok()) return volumes.status();
+  VolumeBetween sum;
+  for (const VolumeBetween& volume : *volumes) {
+    sum.deficit += volume.deficit;
+    sum.excess += volume.excess;
+  }
+  return sum;
 }
 
 absl::StatusOr<PatchDistance> compute_patch_distance(const SurfaceMesh& patch, const SurfaceMesh& target,
@@ -261,6 +275,7 @@ absl::StatusOr<PatchDistance> compute_patch_distance(const SurfaceMesh& patch, c
   std::vector<double> target_to_patch;
   for (const SurfacePoint& nearest : *opposite) target_to_patch.push_back(nearest.distance);
   result.target_to_patch_statistics = compute_distance_statistics(target_to_patch);
+  result.target_vertices = static_cast<int>(target_to_patch.size());
   return result;
 }
 

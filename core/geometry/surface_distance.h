@@ -49,6 +49,9 @@ struct VolumeBetween {
 /// spheres.
 absl::StatusOr<VolumeBetween> compute_volume_between(const SurfaceMesh& patch, const SurfaceMesh& surface,
                                                      const Unwanted& unwanted = nullptr);
+/// The same by triangle of the patch: what is summed up there.
+absl::StatusOr<std::vector<VolumeBetween>> compute_volumes_between(const SurfaceMesh& patch, const SurfaceMesh& surface,
+                                                                   const Unwanted& unwanted = nullptr);
 
 /// The distance between a patch of one surface and another surface, both ways.
 struct PatchDistance {
@@ -58,6 +61,7 @@ struct PatchDistance {
   /// not on its border, and that hang together with the place on the target the patch is nearest
   /// to: the far side of a head is not compared.
   DistanceStatistics target_to_patch_statistics;
+  int target_vertices = 0;  ///< so many of the target are taken
 };
 
 /// `patch`: the surface made of the patch alone. CANCELLED once it is unwanted. Checked by

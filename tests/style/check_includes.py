@@ -4,12 +4,12 @@
     tests/style/check_includes.py ROOT
 
     core/base <- geometry <- {solid, film, anatomy} <- coupling <- model <- plan <- mechanics
-    <- {step, equilibrium} <- simulation <- export
+    <- {step, equilibrium} <- simulation <- {planning, export}
 
 Then come server on core and proto, and client on proto alone; core sees neither gRPC nor Protobuf.
 
-    store <- {sessions, security} <- wire <- backend <- entry <- {patients, simulations, frames}
-    <- main.cc and grpc_server, which registers the services
+    store <- {sessions, security} <- wire <- backend <- entry
+    <- {patients, simulations, planning, frames} <- main.cc and grpc_server, which registers the services
     security <- ops <- backend
 
 In the server the services do not see each other, and the door (connections, before gRPC has them)
@@ -43,22 +43,28 @@ ALLOWED = {
     "core/simulation": BELOW_MODEL
     | {"core/model", "core/plan", "core/mechanics", "core/step", "core/equilibrium", "core/simulation"},
     "core/export": BELOW_MODEL | {"core/model", "core/plan", "core/mechanics", "core/simulation", "core/export"},
+    "core/planning": BELOW_MODEL
+    | {"core/model", "core/plan", "core/mechanics", "core/step", "core/equilibrium", "core/simulation"}
+    | {"core/planning"},
     "server/store": {"core/base", "server/store"},
     "server/security": {"core/base", "server/store", "server/security"},
     "server/door": {"core/base", "server/door"},
     "server/ops": {"core/base", "server/door", "server/security", "server/ops"},
     "server/sessions": {"core", "server/store", "server/sessions"},
     "server/wire": RECORDS
-    | {"core/base", "core/geometry", "core/anatomy", "core/model", "core/plan", "core/simulation"}
+    | {"core/base", "core/geometry", "core/anatomy", "core/model", "core/plan", "core/simulation", "core/planning"}
     | {"proto", "grpc", "server/wire"},
     "server/backend": BELOW_BACKEND
-    | {"core/base", "core/geometry", "core/model", "core/simulation"}
+    | {"core/base", "core/geometry", "core/model", "core/simulation", "core/planning"}
     | {"proto", "server/backend"},
     "server/entry": BELOW_ENTRY | {"core/base", "server/door"} | {"proto", "grpc", "server/entry"},
     "server/patients": BELOW_SERVICES
     | {"core/base", "core/geometry", "core/model"}
     | {"proto", "grpc", "server/patients"},
     "server/simulations": BELOW_SERVICES | {"core/base", "core/export"} | {"proto", "grpc", "server/simulations"},
+    "server/planning": BELOW_SERVICES
+    | {"core/base", "core/geometry", "core/model", "core/planning"}
+    | {"proto", "grpc", "server/planning"},
     "server/frames": BELOW_SERVICES | {"core/base"} | {"proto", "grpc", "server/frames"},
     "server": {"core/base", "core/coupling", "grpc", "server"},
     "client": {"proto", "grpc", "client"},

@@ -70,13 +70,7 @@ class WithoutReflection : public grpc::ServerBuilderOption {
 }  // namespace
 
 GrpcServer::GrpcServer(const ServiceGuard& guard, const DoorBounds& bounds, Backend& backend)
-    : backend_(backend),
-      gate_(backend, guard.authenticator, guard.audit),
-      patients_(backend),
-      operations_(backend),
-      simulations_(backend),
-      frames_(backend),
-      door_(bounds) {}
+    : backend_(backend), gate_(backend, guard.authenticator, guard.audit), services_(backend), door_(bounds) {}
 
 GrpcServer::~GrpcServer() {
   sweeper_.reset();
@@ -105,10 +99,11 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<
     self->encrypted_ =
         builder.experimental().AddExternalConnectionAcceptor(From::FROM_FD, make_tls_credentials(guard.settings));
   }
-  builder.RegisterService(&self->patients_);
-  builder.RegisterService(&self->operations_);
-  builder.RegisterService(&self->simulations_);
-  builder.RegisterService(&self->frames_);
+  builder.RegisterService(&self->services_.patients);
+  builder.RegisterService(&self->services_.operations);
+  builder.RegisterService(&self->services_.simulations);
+  builder.RegisterService(&self->services_.frames);
+  builder.RegisterService(&self->services_.planning);
   self->server_ = builder.BuildAndStart();
   if (self->server_ == nullptr) return absl::InternalError("gRPC does not start; its own log says why");
   if (auto opened = self->open_door(); !opened.ok()) return opened;

@@ -20,6 +20,7 @@
 #include "server/ops/socket_claim.h"
 #include "server/patients/operation_service.h"
 #include "server/patients/patient_service.h"
+#include "server/planning/planning_service.h"
 #include "server/simulations/simulation_service.h"
 
 namespace lipofill::server {
@@ -77,10 +78,16 @@ class GrpcServer {
   std::vector<SocketClaim> claims_;  ///< first: they outlast the server, which removes its sockets
   Backend& backend_;
   CallGate gate_;
-  PatientService patients_;
-  OperationService operations_;
-  SimulationService simulations_;
-  FrameService frames_;
+  struct Services {
+    explicit Services(Backend& backend)
+        : patients(backend), operations(backend), simulations(backend), frames(backend), planning(backend) {}
+    PatientService patients;
+    OperationService operations;
+    SimulationService simulations;
+    FrameService frames;
+    PlanningService planning;
+  };
+  Services services_;
   std::unique_ptr<grpc::Server> server_;
   using Acceptor = std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>;
   Acceptor plain_;

@@ -26,6 +26,22 @@ std::string volume_line(const char* what, const v1::VolumeToTarget& volume) {
   return absl::StrFormat("  %-24s %7.2f mL missing, %.2f mL too much\n", what, volume.deficit_ml(), volume.excess_ml());
 }
 
+/// Without rim, by zone, and of the face's symmetry.
+std::string parts_text(const v1::Evaluation& evaluation) {
+  std::string text =
+      absl::StrCat("Without the rim\n", statistics_line("before", evaluation.without_rim_before().skin_to_target()),
+                   statistics_line("simulated to target", evaluation.without_rim().skin_to_target()),
+                   statistics_line("target to simulated", evaluation.without_rim().target_to_skin()));
+  for (const v1::ZoneComparison& zone : evaluation.zones()) {
+    absl::StrAppend(&text, "Zone ", zone.zone(), "\n", statistics_line("before", zone.before().skin_to_target()),
+                    statistics_line("simulated to target", zone.simulated().skin_to_target()),
+                    volume_line("before", zone.before().volume()), volume_line("simulated", zone.simulated().volume()));
+  }
+  if (!evaluation.has_symmetry()) return text;
+  return absl::StrCat(text, absl::StrFormat("Symmetry index %.2f mm before, %.2f mm simulated\n",
+                                            evaluation.symmetry().before_mm(), evaluation.symmetry().simulated_mm()));
+}
+
 std::string operation_state(const v1::Operation& operation) {
   if (!operation.done()) return absl::StrFormat("%3.0f %%  %s", 100.0 * operation.progress(), operation.stage());
   return operation.has_error() ? absl::StrCat("failed: ", operation.error().message()) : "done";
@@ -101,7 +117,45 @@ std::string describe(const v1::Evaluation& evaluation) {
                       absl::StrFormat("  Hausdorff distance %.2f mm, over %d points of the %s mesh\n",
                                       evaluation.hausdorff_mm(), evaluation.vertices_size(), evaluation.mesh()),
                       "Volume to the target\n", volume_line("before", evaluation.volume_before()),
-                      volume_line("simulated", evaluation.volume_simulated()), kNotAMedicalDevice, "\n");
+                      volume_line("simulated", evaluation.volume_simulated()), parts_text(evaluation),
+                      kNotAMedicalDevice, "\n");
+}
+
+std::string describe(const v1::Target& target) {
+  const v1::TargetReport& report = target.report();
+  const v1::Registration& fit = report.registration();
+  std::string text = absl::StrCat(target.scan(), "\n");
+  if (report.has_plane()) {
+    const v1::SymmetryPlane& plane = report.plane();
+    absl::StrAppendFormat(&text,
+                          "  the %s side mirrored at a plane turned by %.2f degrees and moved by %.2f mm against the "
+                          "landmarks'\n  symmetry index %.2f mm\n",
+                          report.mirrored_side(), plane.turned_degrees(), plane.moved_mm(), plane.symmetry_index_mm());
+  } else {
+    absl::StrAppendFormat(&text, "  placed from %s, known to %.2f mm, confidence %.2f\n", fit.start(),
+                          fit.expected_error_mm(), fit.confidence());
+  }
+  absl::StrAppendFormat(&text, "  %.0f %% overlap, %.0f %% of it within 1 mm, %.2f mm in the median\n",
+                        100.0 * fit.overlap(), 100.0 * fit.share_within_1_mm(), fit.median_mm());
+  return text;
+}
+
+std::string describe(const v1::Deficit& deficit) {
+  std::string text = "Region                       cm2    mL missing   too much   deepest mm   rms mm\n";
+  const auto add = [&text](const std::string& name, const v1::RegionDeficit& region) {
+    absl::StrAppendFormat(&text, "  %-22s %7.1f %13.2f %10.2f %12.2f %8.2f\n", name, region.area_cm2(),
+                          region.volume().deficit_ml(), region.volume().excess_ml(), region.max_deficit_mm(),
+                          region.distance().rms_mm());
+  };
+  add("all", deficit.all());
+  for (const v1::RegionDeficit& region : deficit.regions()) add(region.region(), region);
+  absl::StrAppendFormat(&text, "  Hausdorff distance %.2f mm", deficit.hausdorff_mm());
+  if (deficit.has_symmetry_index_mm()) {
+    absl::StrAppendFormat(&text, ", symmetry index of the face %.2f mm", deficit.symmetry_index_mm());
+  }
+  text += "\n";
+  for (const std::string& remark : deficit.remarks()) absl::StrAppend(&text, "  ", remark, "\n");
+  return absl::StrCat(text, kNotAMedicalDevice, "\n");
 }
 
 std::string describe(const v1::CheckPlanResponse& check) {

@@ -4,6 +4,7 @@
 
 #include "lipofill/v1/operation_service.pb.h"
 #include "lipofill/v1/patient_service.pb.h"
+#include "lipofill/v1/planning_service.pb.h"
 #include "lipofill/v1/simulation_service.pb.h"
 
 namespace lipofill::client {
@@ -18,6 +19,8 @@ std::string layers_text(const v1::ModelReport& report);
 std::string describe(const v1::Operation& operation);
 std::string describe(const v1::Evaluation& evaluation);
 std::string describe(const v1::CheckPlanResponse& check);
+std::string describe(const v1::Target& target);
+std::string describe(const v1::Deficit& deficit);
 std::string list_line(const v1::Patient& patient);
 std::string list_line(const v1::Scan& scan);
 std::string list_line(const v1::Model& model);

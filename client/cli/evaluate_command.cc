@@ -116,7 +116,8 @@ void add_evaluate_command(CLI::App& root, Application& application) {
   command->add_option("--require", options->required,
                       "FIGURE<=NUMBER or FIGURE>=NUMBER, as \"p95_mm<=2\": exit code 1 where it is missed. FIGURE is a "
                       "name of evaluation.json; one of statistics is from the simulated skin to the target, others as "
-                      "\"target_to_simulated.max_mm\", \"volume_simulated.deficit_ml\"; may be repeated");
+                      "\"target_to_simulated.max_mm\", \"volume_simulated.deficit_ml\", "
+                      "\"zones.ZONE.simulated.skin_to_target.p95_mm\"; may be repeated");
   command->add_option("--unit", options->unit, "unit of the target's numbers: mm (default), cm or m")
       ->transform(CLI::CheckedTransformer(kUnitNames));
 }

@@ -36,6 +36,7 @@ void add_all_commands(CLI::App& root, Application& application) {
   add_export_command(root, application);
   add_evaluate_command(root, application);
   add_shape_command(root, application);
+  add_target_command(root, application);
   add_render_command(root, application);
   add_operation_commands(root, application);
   add_health_command(root, application);

@@ -39,19 +39,25 @@ absl::StatusOr<v1::Operation> wait_operation(const Connection& connection, v1::O
   return operation;
 }
 
-absl::StatusOr<v1::Model> build_model(const Connection& connection, const v1::BuildModelRequest& request,
-                                      const BuildProgress& progress) {
-  auto operation = connection.call<v1::PatientService>(&v1::PatientService::Stub::BuildModel, request);
-  if (!operation.ok()) return operation.status();
-  const auto done = wait_operation(connection, *operation, progress);
+absl::Status finish_operation(const Connection& connection, const v1::Operation& operation,
+                              const BuildProgress& progress, google::protobuf::Message* response) {
+  const auto done = wait_operation(connection, operation, progress);
   if (!done.ok()) {
-    if (connection.stop().stop_requested()) cancel_operation(connection, operation->name());
+    if (connection.stop().stop_requested()) cancel_operation(connection, operation.name());
     return done.status();
   }
+  if (done->response().UnpackTo(response)) return absl::OkStatus();
+  return absl::InternalError(
+      absl::StrCat("operation ", done->name(), " ended without a ", response->GetDescriptor()->name()));
+}
+
+absl::StatusOr<v1::Model> build_model(const Connection& connection, const v1::BuildModelRequest& request,
+                                      const BuildProgress& progress) {
+  const auto operation = connection.call<v1::PatientService>(&v1::PatientService::Stub::BuildModel, request);
+  if (!operation.ok()) return operation.status();
   v1::Model model;
-  if (!done->response().UnpackTo(&model)) {
-    return absl::InternalError(absl::StrCat("operation ", done->name(), " ended without a model"));
-  }
+  const absl::Status done = finish_operation(connection, *operation, progress, &model);
+  if (!done.ok()) return done;
   return model;
 }
 

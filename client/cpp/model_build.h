@@ -18,6 +18,11 @@ using BuildProgress = std::function<void(const std::string&, double)>;
 absl::StatusOr<v1::Operation> wait_operation(const Connection& connection, v1::Operation operation,
                                              const BuildProgress& progress = {});
 
+/// Waits for an operation and takes its response. When the connection's stop is asked for, the
+/// operation is cancelled too. INTERNAL where the response is of another type.
+absl::Status finish_operation(const Connection& connection, const v1::Operation& operation,
+                              const BuildProgress& progress, google::protobuf::Message* response);
+
 /// Builds a model and waits for it. When the connection's stop is asked for, the building is
 /// cancelled too.
 /// Checked by tests/integration/cli/.

@@ -41,13 +41,13 @@ struct DeficitTask {
   double rim_width = 0.0;                ///< skin this near to where scan or target end is left out [m]
 };
 
-/// Measures the deficit: signed distances from the scan's outer skin to the target's, positive where
-/// the skin lies outside, and the volume between them by region. With landmarks it is the skin in
-/// the ball around the face that counts. A triangle belongs to a region when its middle does,
-/// within 30 mm of the region's centre along the skin's normal.
-/// INVALID_ARGUMENT for surfaces without skin, FAILED_PRECONDITION where nothing is left to compare,
-/// CANCELLED. Checked by tests/unit/planning/deficit_test.cc on shapes of known volume and on the
-/// shared patient, whose missing volume is known.
+/// Measures the deficit: signed distances from the scan's outer skin to the target's, positive
+/// where the skin lies outside, and the volume between them by region. With landmarks it is the
+/// skin in the ball around the face that counts. A triangle belongs to a region when its middle
+/// does, within 30 mm of the region's centre along the skin's normal. INVALID_ARGUMENT for surfaces
+/// without skin, FAILED_PRECONDITION where nothing is left to compare, CANCELLED. Checked by
+/// tests/unit/planning/deficit_test.cc on shapes of known volume and on the shared patient, whose
+/// missing volume is known.
 absl::StatusOr<Deficit> measure_deficit(const DeficitTask& task, const Unwanted& unwanted = nullptr);
 
 }  // namespace lipofill::planning

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 
 namespace lipofill::planning {
 
@@ -18,7 +20,8 @@ struct RigidMotion {
   }
 };
 
-/// Turns by a vector (its direction the axis, its length the angle [rad]) about a point, then moves.
+/// Turns by a vector (its direction the axis, its length the angle [rad]) about a point, then
+/// moves.
 inline RigidMotion turn_about(const Eigen::Vector3d& centre, const Eigen::Vector3d& turn, const Eigen::Vector3d& move) {
   const double angle = turn.norm();
   RigidMotion motion;

@@ -16,8 +16,8 @@ struct SurfaceSamples {
 };
 
 /// n samples, each for the same area: sample k is where k + 1/2 of n parts of the area are before
-/// it, in the order of the triangles, at a place in its triangle from a sequence of low discrepancy.
-/// It depends on the mesh alone, not on where it lies in space. Checked by
+/// it, in the order of the triangles, at a place in its triangle from a sequence of low
+/// discrepancy. It depends on the mesh alone, not on where it lies in space. Checked by
 /// tests/unit/planning/surface_samples_test.cc.
 SurfaceSamples sample_surface(const SkinSurface& skin, int n);
 

@@ -16,8 +16,8 @@
 namespace lipofill::planning {
 namespace {
 
-constexpr int kSamples = 3000;
-constexpr int kIterations = 60;
+constexpr int kSamples = 2000;
+constexpr int kIterations = 40;
 constexpr double kFirstReach = 0.015;  // [m]
 constexpr double kLastReach = 0.010;   // [m]
 constexpr double kRest = 1e-8;         // [m]

@@ -6,6 +6,7 @@
 #include "core/base/units.h"
 #include "core/geometry/surface_distance.h"
 #include "server/wire/report_conversion.h"
+#include "server/wire/target_conversion.h"
 
 namespace lipofill::server {
 namespace {
@@ -89,19 +90,6 @@ absl::StatusOr<SkinPatch> make_square_patch(const v1::MeshSlice& meshes, const v
   return patch;
 }
 
-v1::DistanceStatistics to_signed_statistics(const geometry::DistanceStatistics& statistics) {
-  v1::DistanceStatistics message = to_distance_statistics(statistics);
-  message.set_signed_mean_mm(statistics.signed_mean * kMillimetresPerMetre);
-  return message;
-}
-
-v1::VolumeToTarget to_volume(const geometry::VolumeBetween& volume) {
-  v1::VolumeToTarget message;
-  message.set_deficit_ml(volume.deficit / kCubicMetresPerMillilitre);
-  message.set_excess_ml(volume.excess / kCubicMetresPerMillilitre);
-  return message;
-}
-
 }  // namespace
 
 absl::StatusOr<SkinPatch> make_skin_patch(const model::FaceModel& model, const v1::MeshSlice& meshes,
@@ -130,8 +118,8 @@ absl::StatusOr<v1::Evaluation> evaluate(const SkinPatch& patch, const geometry::
   evaluation.set_hausdorff_mm(
       std::max(evaluation.simulated_to_target().max_mm(), evaluation.target_to_simulated().max_mm()));
   *evaluation.mutable_before_to_target() = to_signed_statistics(geometry::compute_distance_statistics(*before));
-  *evaluation.mutable_volume_before() = to_volume(*volume_before);
-  *evaluation.mutable_volume_simulated() = to_volume(*volume_after);
+  *evaluation.mutable_volume_before() = to_volume_to_target(*volume_before);
+  *evaluation.mutable_volume_simulated() = to_volume_to_target(*volume_after);
   for (const double d : distance->patch_to_target) {
     evaluation.add_distance_mm(static_cast<float>(kMillimetresPerMetre * d));
   }

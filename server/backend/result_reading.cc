@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/backend/evaluation.h"
+#include "server/backend/evaluation_detail.h"
 #include "server/backend/parking.h"
 #include "server/backend/scan_reading.h"
 #include "server/store/record_names.h"
@@ -105,6 +106,8 @@ absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::E
   if (!id.ok()) return id.status();
   const auto scan = parse_scan_name(request.target_scan(), "target_scan");
   if (!scan.ok()) return scan.status();
+  const auto rim_width = read_rim_width(request);
+  if (!rim_width.ok()) return rim_width.status();
   const auto record = backend.store.get_simulation(*id);
   if (!record.ok()) return record.status();
   const auto target = read_scan_surface(backend, scan->patient, scan->id);
@@ -112,11 +115,20 @@ absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::E
   if (absl::Status wanted = check_wanted(unwanted); !wanted.ok()) return wanted;
   const auto model = backend.load_model(record->model);
   if (!model.ok()) return model.status();
-  const auto result = read_present(backend, *id, {(*model)->is_square ? "skin" : "scan"});
+  std::vector<std::string> meshes = {"skin"};
+  if (!(*model)->is_square) meshes.emplace_back("scan");
+  const auto result = read_present(backend, *id, meshes);
   if (!result.ok()) return result.status();
   const auto patch = make_skin_patch(**model, result->meshes, result->frame);
   if (!patch.ok()) return patch.status();
-  return evaluate(*patch, *target, unwanted);
+  auto evaluation = evaluate(*patch, *target, unwanted);
+  if (!evaluation.ok()) return evaluation;
+  v1::SimulationSpec spec;
+  spec.ParseFromString(record->spec_message);
+  const PatchZones zones = find_patch_zones(**model, spec, *patch, result->frame);
+  const absl::Status added = add_details(**model, *patch, zones, *target, *rim_width, unwanted, *evaluation);
+  if (!added.ok()) return added;
+  return evaluation;
 }
 
 }  // namespace lipofill::server

@@ -10,6 +10,7 @@
 #include "server/store/record_names.h"
 #include "server/wire/model_conversion.h"
 #include "server/wire/names.h"
+#include "server/wire/operation_response.h"
 #include "server/wire/report_conversion.h"
 #include "server/wire/request_key.h"
 #include "server/wire/timestamps.h"
@@ -103,7 +104,7 @@ absl::StatusOr<std::string> build_and_keep(Backend& backend, const std::string& 
   backend.models.put(model_name(kept->patient, kept->id), *model);
   spdlog::info("{} built from {} hexahedra, {}", model_name(kept->patient, kept->id),
                (*model)->geometry.grid.n_hexahedra(), kept->content_hash);
-  return to_model(*kept).SerializeAsString();
+  return pack_response(to_model(*kept));
 }
 
 void run_build(Backend& backend, const std::string& operation, const ModelOrder& order, const RequestKey& request) {
@@ -129,7 +130,7 @@ absl::StatusOr<std::optional<OperationView>> find_earlier(Backend& backend, cons
   if (!ids.ok()) return ids.status();
   const auto record = backend.store.get_model(ids->patient, ids->id);
   if (!record.ok()) return record.status();
-  return backend.operations.add_done(patient_name(patient), request, to_model(*record).SerializeAsString());
+  return backend.operations.add_done(patient_name(patient), request, pack_response(to_model(*record)));
 }
 
 /// The answer to a request that is only to be checked, when nothing is wrong with it.
@@ -138,7 +139,7 @@ OperationView checked_only(const ModelOrder& order) {
   *model.mutable_spec() = order.message;
   OperationView view;
   view.target = patient_name(order.patient);
-  view.response_message = model.SerializeAsString();
+  view.response_message = pack_response(model);
   view.done = true;
   view.progress = 1.0;
   view.stage = "checked, not built";

@@ -2,11 +2,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
-#include "lipofill/v1/model.pb.h"
 #include "server/entry/listing.h"
+#include "server/entry/operation_answer.h"
 #include "server/entry/unary.h"
-#include "server/wire/error_message.h"
-#include "server/wire/timestamps.h"
 
 namespace lipofill::server {
 namespace {
@@ -26,28 +24,6 @@ absl::StatusOr<std::chrono::milliseconds> read_timeout(const v1::WaitOperationRe
 }
 
 }  // namespace
-
-v1::Operation to_operation(const Backend& backend, const OperationView& view) {
-  v1::Operation operation;
-  if (!view.id.empty()) operation.set_name(absl::StrCat("operations/", view.id));
-  operation.set_target(view.target);
-  operation.set_done(view.done);
-  operation.set_progress(view.progress);
-  operation.set_stage(view.stage);
-  *operation.mutable_create_time() = to_timestamp(view.create_time_us);
-  if (!view.done) {
-    operation.set_queue_position(static_cast<uint32_t>(backend.builds.position(view.id)));
-    return operation;
-  }
-  if (view.error.ok()) {
-    v1::Model model;
-    model.ParseFromString(view.response_message);
-    operation.mutable_response()->PackFrom(model);
-  } else {
-    *operation.mutable_error() = to_error_message(view.error);
-  }
-  return operation;
-}
 
 OperationService::Reactor* OperationService::GetOperation(Context* context, const v1::GetOperationRequest* request,
                                                           v1::Operation* response) {

@@ -5,9 +5,6 @@
 
 namespace lipofill::server {
 
-/// The operation as the wire has it, with its place in the queue of builds while it waits.
-v1::Operation to_operation(const Backend& backend, const OperationView& view);
-
 /// Long-running operations. See proto/lipofill/v1/operation_service.proto.
 class OperationService : public v1::OperationService::CallbackService {
  public:

@@ -25,7 +25,7 @@ struct OperationView {
   double progress = 0.0;
   std::string stage;
   absl::Status error;            ///< once done, when it failed
-  std::string response_message;  ///< once done, when it did not
+  std::string response_message;  ///< once done, when it did not: a google.protobuf.Any
   int64_t create_time_us = 0;
 };
 

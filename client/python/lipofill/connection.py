@@ -15,6 +15,7 @@ from lipofill.retries import RetryPolicy
 from lipofill.runs import Collections, Run
 from lipofill.scans import Scans
 from lipofill.simulations import Simulations
+from lipofill.targets import Targets
 
 
 class Connection(Channel):
@@ -39,7 +40,7 @@ class Connection(Channel):
 
     Attributes
     ----------
-    patients, scans, models, simulations, operations
+    patients, scans, models, targets, simulations, operations
         What the daemon holds.
     patient_stub, simulation_stub, frame_stub, operation_stub
         The generated stubs, for ``call``.
@@ -58,6 +59,7 @@ class Connection(Channel):
         self.scans = Scans(self)
         self.operations = Operations(self)
         self.models = Models(self, self.operations)
+        self.targets = Targets(self, self.operations)
         self.simulations = Simulations(self)
 
     def run(

@@ -137,6 +137,8 @@ std::vector<Row> simulation_rows() {
       absent(simulations + "RestoreSimulation", R"({"checkpoint":"simulations/x/checkpoints/none"})"),
       absent(simulations + "GetSeries", R"({"name":"simulations/none"})"),
       invalid(simulations + "EvaluateSimulation", R"({"name":"simulations/x","targetScan":"scan"})", {"target_scan"}),
+      invalid(simulations + "EvaluateSimulation",
+              R"({"name":"simulations/x","targetScan":"patients/anna/scans/none","rimMm":-1})", {"rim_mm"}),
       absent(simulations + "ExportTissueDeck", R"({"name":"simulations/none"})"),
   };
 }
@@ -147,6 +149,14 @@ std::vector<Row> other_rows() {
       invalid("OperationService/ListOperations", R"({"pageSize":-1})", {"page_size"}),
       invalid("OperationService/WaitOperation", R"({"name":"operations/none","timeout":"61s"})", {"timeout"}),
       absent("OperationService/CancelOperation", R"({"name":"operations/none"})"),
+      invalid("PlanningService/MakeTarget", R"({"parent":"patients/anna","spec":{}})", {"spec.scan", "spec.source"}),
+      absent("PlanningService/MakeTarget",
+             R"({"parent":"patients/anna","spec":{"scan":"patients/anna/scans/none",
+                 "surface":{"scan":"patients/anna/scans/none"}}})"),
+      invalid("PlanningService/MeasureDeficit", R"({"scan":"scan","rimMm":51})", {"rim_mm", "scan", "target_scan"}),
+      absent("PlanningService/MeasureDeficit",
+             R"({"scan":"patients/anna/scans/none","targetScan":"patients/anna/scans/none"})"),
+      {"PlanningService/ProposePlan", R"({"parent":"patients/anna"})", StatusCode::UNIMPLEMENTED, "UNIMPLEMENTED", {}},
       absent("FrameService/Watch", R"({"simulation":"simulations/none"})"),
       invalid("FrameService/Watch", R"({"simulation":"simulations/x","maxRateHz":-1})", {"max_rate_hz"}),
       absent("FrameService/AcknowledgeFrame", R"({"simulation":"simulations/x","viewer":"none"})"),

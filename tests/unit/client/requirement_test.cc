@@ -18,6 +18,9 @@ v1::Evaluation make_evaluation() {
   evaluation.mutable_target_to_simulated()->set_max_mm(4.0);
   evaluation.set_hausdorff_mm(4.5);
   evaluation.mutable_volume_simulated()->set_deficit_ml(0.3);
+  v1::ZoneComparison& zone = *evaluation.add_zones();
+  zone.set_zone("masseter");
+  zone.mutable_simulated()->mutable_skin_to_target()->set_p95_mm(0.8);
   return evaluation;
 }
 
@@ -36,6 +39,13 @@ TEST(Requirement, HoldsAFigureToItsBound) {
   EXPECT_TRUE(is_met("target_to_simulated.max_mm<=4"));
   EXPECT_FALSE(is_met("hausdorff_mm<=4"));
   EXPECT_TRUE(is_met("volume_simulated.deficit_ml<=0.5"));
+}
+
+TEST(Requirement, ReachesIntoZonesByName) {
+  EXPECT_TRUE(is_met("zones.masseter.simulated.skin_to_target.p95_mm<=0.8"));
+  EXPECT_FALSE(is_met("zones.masseter.simulated.skin_to_target.p95_mm<=0.7"));
+  EXPECT_FALSE(is_met("zones.temple.simulated.skin_to_target.p95_mm<=9")) << "there is no such zone";
+  EXPECT_FALSE(read_requirements({"zones.masseter.p95_mm<=1"}).ok());
 }
 
 TEST(Requirement, AFigureThatIsNotThereMeetsNothing) {

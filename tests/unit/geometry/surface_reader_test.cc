@@ -7,6 +7,7 @@
 #include <random>
 #include <sstream>
 
+#include "core/geometry/ply_writer.h"
 #include "tests/unit/geometry/test_surfaces.h"
 
 namespace lipofill::geometry {
@@ -285,6 +286,17 @@ TEST(SurfaceReader, ChecksASurface) {
   mesh.triangles.push_back({0, 5, 9});
   mesh.triangles.push_back({0, 5, 10});
   EXPECT_GT(check_surface(mesh).non_manifold_edges, 0);
+}
+
+TEST(PlyWriter, IsReadBackToTheBit) {
+  SurfaceMesh mesh;
+  mesh.points.resize(3, 4);
+  mesh.points << 0.1, 0.2 + 1e-17, 1.0 / 3.0, -0.07, 0, 1e-9, 0.3, 0.1, -0.0, 0.25, 0.125, M_PI / 10;
+  mesh.triangles = {{0, 1, 2}, {2, 1, 3}};
+  const auto read = read_surface(write_ply(mesh), SurfaceFormat::kPly, 1.0);
+  ASSERT_TRUE(read.ok()) << read.status();
+  EXPECT_TRUE(read->points == mesh.points);
+  EXPECT_EQ(read->triangles, mesh.triangles);
 }
 
 }  // namespace

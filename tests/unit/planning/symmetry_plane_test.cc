@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "core/base/units.h"
+#include "core/planning/symmetry_index.h"
 #include "tests/unit/planning/test_heads.h"
 
 namespace lipofill::planning {
@@ -57,6 +58,24 @@ TEST(SymmetryPlane, MovesWithTheHead) {
 TEST(SymmetryPlane, SaysThatItNeedsLandmarks) {
   const auto plane = find_symmetry_plane(*extract_skin(make_even_head(), "the head"), {});
   EXPECT_THAT(std::string(plane.status().message()), ::testing::HasSubstr("landmarks"));
+}
+
+// A plate 3 mm from the plane, whose face has its other side 5 mm from it: everywhere 2 mm apart.
+TEST(SymmetryIndex, OfPlatesIsWhatTheirHeightsDifferBy) {
+  const auto make_plate = [](double x, double size) {
+    geometry::SurfaceMesh plate;
+    plate.points.resize(3, 4);
+    plate.points << x, x, x, x, -size, size, size, -size, -size, -size, size, size;
+    plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+    if (x < 0.0) plate.triangles = {{0, 2, 1}, {0, 3, 2}};
+    return plate;
+  };
+  SkinSurface face;
+  face.mesh = make_plate(-0.005, 0.1);
+  face.normals = geometry::compute_vertex_normals(face.mesh);
+  face.is_border = {false, false};
+  EXPECT_NEAR(measure_symmetry_index(make_plate(0.003, 0.02), face, {}), 0.002, 1e-12);
+  EXPECT_EQ(measure_symmetry_index(make_plate(0.020, 0.02), face, {}), 0.0) << "15 mm apart are no counterparts";
 }
 
 }  // namespace

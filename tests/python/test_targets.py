@@ -94,7 +94,7 @@ def test_an_earlier_scan_is_placed_by_its_shape(connection, scans, landmarks):
     face, before = scans
     target = connection.targets.place(face, before, landmarks=landmarks)
     assert target.report.registration.start == "shape"
-    assert target.report.registration.confidence > 0.5
+    assert target.report.registration.confidence > 0.1
 
 
     figures = connection.targets.deficit(face, target.scan, landmarks=landmarks, figures_only=True)

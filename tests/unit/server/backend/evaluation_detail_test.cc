@@ -82,7 +82,8 @@ TEST(EvaluationDetail, ComparesByZoneBothWays) {
   EXPECT_FALSE(evaluation.has_symmetry()) << "a square has no face";
 }
 
-// The target ends 10 mm beyond the skin's edge at x = 0; a rim of 15 mm takes what faces its border.
+// The target ends 10 mm beyond the skin's edge at x = 0; a rim of 15 mm takes what faces its
+// border.
 TEST(EvaluationDetail, LeavesOutWhatIsNearTheTargetsRim) {
   Case c = make_case();
   c.target = make_grid(6, 0.01, 0.001);

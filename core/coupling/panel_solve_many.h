@@ -44,8 +44,8 @@ struct RowOfEight<double> {
 
 /// PanelSolve (panel_solve.h) for kWidth right sides at once, which share the reading of the
 /// factor. t is row by row: kWidth values of the first row, then those of the next. Each right side
-/// goes through its sums in an order of its own, so that its solution does not depend on the others.
-/// Checked by tests/unit/coupling/panel_solve_many_test.cc.
+/// goes through its sums in an order of its own, so that its solution does not depend on those
+/// beside it. Checked by tests/unit/coupling/panel_solve_many_test.cc.
 template <typename Scalar>
 class PanelSolveMany {
  public:

@@ -96,6 +96,12 @@ std::optional<std::string> DirectShape::find_breaking_ligament(
   return {};
 }
 
+DirectShape::Members DirectShape::begin_ensemble(const SimulationState& from,
+                                                 const std::vector<Eigen::VectorXd>& injected) {
+  const equilibrium::PoolTarget target = target_with(from, injected);
+  return {{*equilibrium_, target, from.spring_is_intact, kForceTolerance}, target.volume};
+}
+
 equilibrium::PoolTarget DirectShape::target_with(const SimulationState& from,
                                                  const std::vector<Eigen::VectorXd>& injected) const {
   return {equilibrium_->pools().sum(volume_with(cells_, from, injected)), lowest_head_};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/equilibrium/ensemble.h"
 #include "core/equilibrium/equilibrium.h"
 #include "core/equilibrium/scope.h"
 #include "core/plan/injection_schedule.h"
@@ -45,6 +46,12 @@ class DirectShape {
                               mechanics::SimulationState& next);
   /// The first ligament that breaks at the last shape, where it holds until then.
   std::optional<std::string> find_breaking_ligament(const std::vector<mechanics::LigamentLayout>& ligaments) const;
+  /// Members beside the shape with what is injected, whose own volumes and moduli are these.
+  struct Members {
+    equilibrium::Ensemble ensemble;
+    Eigen::VectorXd volumes;  ///< of the pools, as MemberChange has them [m3]
+  };
+  Members begin_ensemble(const mechanics::SimulationState& from, const std::vector<Eigen::VectorXd>& injected);
   /// What finds them.
   equilibrium::Equilibrium& equilibrium() { return *equilibrium_; }
 

@@ -18,6 +18,8 @@ namespace {
 constexpr double kRateOfAdded = 1e-6;
 /// Of the largest displacement, over which the volume that a small motion sweeps is measured [m].
 constexpr double kSweep = 1e-6;
+/// Members of an ensemble that are found side by side; between such groups somebody may cancel.
+constexpr size_t kMembersTogether = 25;
 /// A layer is thicker by this share where the difference to it is taken.
 constexpr double kThickening = 1e-4;
 
@@ -45,6 +47,11 @@ void check_volumes(const TrialVolumes& volumes, size_t n_injections, FieldViolat
 }
 
 }  // namespace
+
+bool has_zone(const PoolReport& pool, const std::string& zone) {
+  const std::string all = " + " + pool.zones + " + ";
+  return all.find(" + " + zone + " + ") != std::string::npos;
+}
 
 TrialShape::TrialShape(std::unique_ptr<Simulation> simulation)
     : simulation_(std::move(simulation)),
@@ -115,6 +122,7 @@ absl::Status TrialShape::find(const TrialVolumes& volumes, bool from_last) {
       from_last ? impl.direct->follow(*rest_, injected, next) : impl.direct->find(*rest_, injected, next);
   if (settled.share == 0.0) return absl::FailedPreconditionError("no shape at rest was found: " + settled.reason);
   impl.schedule = *std::move(schedule);
+  injected_ = std::move(injected);
   impl.state = *rest_;
   impl.become(settled, std::move(next), end);
   impl.report.way = "directly";
@@ -163,6 +171,87 @@ std::vector<ShapeSensitivity> TrialShape::find_sensitivities() {
     add(ShapeParameter::kLayerThickness, layers[layer_of_beside[k]].name, found.by_tissue[k]);
   }
   return all;
+}
+
+/// Of an injection's volume, the share that each pool receives; a zone in two pieces is two pools.
+Eigen::VectorXd TrialShape::pool_shares(size_t injection) const {
+  const Simulation::Impl& impl = *simulation_->impl_;
+  const auto placed = impl.schedule.place(*impl.model, impl.films, impl.spec.injections[injection], 0.0);
+  const mechanics::FilmCells& cells = impl.stepper->cells();
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(cells.n());
+  if (placed.ok()) {
+    for (size_t k = 0; k < placed->cells.size(); ++k) {
+      all[cells.offset[static_cast<size_t>(placed->film)] + placed->cells[k]] += placed->shares[k];
+    }
+  }
+  Eigen::VectorXd on_tissue;
+  cells.gather_tissue_part(all, on_tissue);
+  return impl.direct->equilibrium().pools().sum(on_tissue);
+}
+
+std::vector<std::optional<ShapeSensitivity>> TrialShape::find_injection_sensitivities() {
+  std::vector<std::optional<ShapeSensitivity>> all;
+  if (share_ < 1.0) return all;
+  const Simulation::Impl& impl = *simulation_->impl_;
+  const auto by_pool = impl.direct->equilibrium().differentiate_by_volume();
+  for (size_t k = 0; k < impl.spec.injections.size(); ++k) {
+    const Eigen::VectorXd shares = pool_shares(k);
+    std::optional<equilibrium::Sensitivity> sum;
+    for (Eigen::Index pool = 0; pool < shares.size(); ++pool) {
+      if (shares[pool] == 0.0) continue;
+      const auto& found = by_pool[static_cast<size_t>(pool)];
+      if (!found) {
+        sum.reset();
+        break;
+      }
+      if (!sum) {
+        sum = equilibrium::Sensitivity{Eigen::Matrix3Xd::Zero(3, found->displacement.cols()),
+                                       Eigen::VectorXd::Zero(found->pool_head.size())};
+      }
+      sum->displacement += shares[pool] * found->displacement;
+      sum->pool_head += shares[pool] * found->pool_head;
+    }
+    all.emplace_back();
+    if (sum) all.back() = describe(ShapeParameter::kPoolVolume, impl.spec.injections[k].zone, *sum);
+  }
+  return all;
+}
+
+absl::StatusOr<Eigen::MatrixXd> TrialShape::find_member_pressures(const std::vector<Eigen::VectorXd>& moduli,
+                                                                  const Unwanted& unwanted) {
+  Simulation::Impl& impl = *simulation_->impl_;
+  auto [ensemble, volumes] = impl.direct->begin_ensemble(*rest_, injected_);
+  const std::vector<ZoneReport> zones = simulation_->zone_reports();
+  const Eigen::VectorXd& nominal = ensemble.nominal().pool_head;
+  Eigen::MatrixXd pressures(static_cast<Eigen::Index>(zones.size()), static_cast<Eigen::Index>(moduli.size()));
+  pressures.setConstant(std::numeric_limits<double>::infinity());
+  for (size_t first = 0; first < moduli.size(); first += kMembersTogether) {
+    if (const absl::Status wanted = check_wanted(unwanted); !wanted.ok()) return wanted;
+    const size_t last = std::min(moduli.size(), first + kMembersTogether);
+    std::vector<equilibrium::MemberChange> changes;
+    for (size_t k = first; k < last; ++k) changes.push_back({moduli[k], volumes, nullptr});
+    const auto members = ensemble.find(changes);
+    for (size_t k = first; k < last; ++k) {
+      const auto& member = members[k - first];
+      if (!member.ok()) return member.status();
+      if (!member->is_whole()) continue;
+      for (size_t zone = 0; zone < zones.size(); ++zone) {
+        double more = -std::numeric_limits<double>::infinity();
+        for (size_t pool = 0; pool < pools_.size(); ++pool) {
+          if (!has_zone(pools_[pool], zones[zone].name)) continue;
+          const auto row = static_cast<Eigen::Index>(pool);
+          more = std::max(more, member->pool_head[row] - nominal[row]);
+        }
+        pressures(static_cast<Eigen::Index>(zone), static_cast<Eigen::Index>(k)) = zones[zone].mean_pressure + more;
+      }
+    }
+  }
+  is_from_rest_ = true;
+  return pressures;
+}
+
+Eigen::Matrix3Xd TrialShape::skin_displacement() const {
+  return simulation_->impl_->skin_displacement();
 }
 
 std::optional<TrialShape::ThickerTissue> TrialShape::make_thicker_tissue(int layer) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/base/unwanted.h"
 #include "core/equilibrium/equilibrium.h"
 #include "core/mechanics/simulation_state.h"
 #include "core/simulation/simulation.h"
@@ -36,6 +37,9 @@ struct PoolReport {
   double volume = 0.0;  ///< [m3]
   double head = 0.0;    ///< pressure at the origin of coordinates [Pa]
 };
+
+/// Whether the fat of a zone is part of a pool.
+bool has_zone(const PoolReport& pool, const std::string& zone);
 
 enum class ShapeParameter { kPoolVolume, kLayerModulus, kLayerThickness };
 
@@ -78,12 +82,26 @@ class TrialShape {
   /// Of each pool's volume, then of each layer's modulus, then of each layer's thickness; none
   /// where the share is below 1. A parameter whose answer is not found is left out.
   std::vector<ShapeSensitivity> find_sensitivities();
+  /// Of the volume of each of the plan's injections, in their order, from those of the pools that
+  /// it goes into; an injection whose answer is not found has none. Empty where the share is below
+  /// 1. The pressures are those of the pools, as everywhere.
+  std::vector<std::optional<ShapeSensitivity>> find_injection_sensitivities();
+  /// Pressures of the zones, the mean over each as in the zone reports, where the layers' moduli
+  /// are these times those of the model and the volumes those of the last shape [Pa] (zones,
+  /// members). A member that the tissue does not hold has infinite pressures. The last shape is
+  /// then from rest. INVALID_ARGUMENT for moduli out of their bounds, CANCELLED once it is
+  /// unwanted.
+  absl::StatusOr<Eigen::MatrixXd> find_member_pressures(const std::vector<Eigen::VectorXd>& moduli,
+                                                        const Unwanted& unwanted);
+  /// Of its nodes [m] (3, nodes_per_level).
+  Eigen::Matrix3Xd skin_displacement() const;
 
  private:
   explicit TrialShape(std::unique_ptr<Simulation> simulation);
   absl::StatusOr<plan::InjectionSchedule> schedule_with(const TrialVolumes& volumes) const;
   struct ThickerTissue;
   std::optional<ThickerTissue> make_thicker_tissue(int layer) const;
+  Eigen::VectorXd pool_shares(size_t injection) const;
   ShapeSensitivity describe(ShapeParameter parameter, const std::string& name,
                             const equilibrium::Sensitivity& found) const;
 
@@ -93,6 +111,7 @@ class TrialShape {
   std::string reason_;
   bool is_from_rest_ = false;
   std::vector<PoolReport> pools_;
+  std::vector<Eigen::VectorXd> injected_;  ///< by the last find(), a film [m3]
 };
 
 }  // namespace lipofill::simulation

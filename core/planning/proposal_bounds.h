@@ -1,0 +1,49 @@
+#pragma once
+
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace lipofill::planning {
+
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+/// Bounds of the volume of a zone [m3].
+struct VolumeRange {
+  double low = 0.0;
+  double high = kUnbounded;
+};
+
+/// What volumes must keep to.
+struct ProposalBounds {
+  VolumeRange each_zone;                     ///< of zones that have no own
+  std::map<std::string, VolumeRange> zones;  ///< by name
+  double max_total = kUnbounded;             ///< [m3]
+  double max_pressure = kUnbounded;          ///< of the fat at rest, the mean over each zone [Pa]
+  double max_lift = kUnbounded;              ///< of any node of the skin [m]
+
+  const VolumeRange& of(const std::string& zone) const {
+    const auto own = zones.find(zone);
+    return own == zones.end() ? each_zone : own->second;
+  }
+};
+
+/// What holds a volume; kPath: no more of the fat goes in.
+enum class Bound { kNone, kMinZone, kMaxZone, kMaxTotal, kMaxPressure, kMaxLift, kPath };
+
+/// What solving took.
+struct ProposalCost {
+  int shapes = 0;       ///< settled shapes
+  int derivatives = 0;  ///< of a shape by a volume
+  int factorisations = 0;
+
+  int solves() const { return shapes + derivatives; }
+  void add(const ProposalCost& other) {
+    shapes += other.shapes;
+    derivatives += other.derivatives;
+    factorisations += other.factorisations;
+  }
+};
+
+}  // namespace lipofill::planning

@@ -36,6 +36,7 @@ const std::map<std::string, MethodRule>& rules() {
       {"/lipofill.v1.PatientService/UploadScan", {Effect::kBegins, Role::kPlanner}},
       {"/lipofill.v1.PlanningService/MakeTarget", {Effect::kBegins, Role::kPlanner}},
       {"/lipofill.v1.PlanningService/MeasureDeficit", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.PlanningService/PlanDelivery", {Effect::kBegins, Role::kViewer}},
       {"/lipofill.v1.PlanningService/ProposePlan", {Effect::kBegins, Role::kPlanner}},
       {"/lipofill.v1.SimulationService/CheckPlan", {Effect::kNone, Role::kViewer}},
       {"/lipofill.v1.SimulationService/CreateCheckpoint", {Effect::kBegins, Role::kPlanner}},

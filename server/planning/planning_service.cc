@@ -3,6 +3,8 @@
 #include "server/entry/operation_answer.h"
 #include "server/entry/unary.h"
 #include "server/planning/deficit_measuring.h"
+#include "server/planning/delivery_calls.h"
+#include "server/planning/proposal_calls.h"
 #include "server/planning/target_making.h"
 
 namespace lipofill::server {
@@ -17,8 +19,12 @@ PlanningService::Reactor* PlanningService::MakeTarget(Context* context, const v1
 }
 
 PlanningService::Reactor* PlanningService::ProposePlan(Context* context, const v1::ProposePlanRequest* request,
-                                                       v1::Operation*) {
-  return answer(context, request, [] { return absl::UnimplementedError("this daemon proposes no plans yet"); });
+                                                       v1::Operation* response) {
+  return answer(context, request, [&]() -> absl::Status {
+    const auto operation = start_proposal(backend_, call_of(context).principal, *request);
+    if (operation.ok()) *response = to_operation(backend_, *operation);
+    return operation.status();
+  });
 }
 
 PlanningService::Reactor* PlanningService::MeasureDeficit(Context* context, const v1::MeasureDeficitRequest* request,
@@ -27,6 +33,15 @@ PlanningService::Reactor* PlanningService::MeasureDeficit(Context* context, cons
     auto deficit = measure_deficit_of(backend_, *request, caller_has_left(context));
     if (deficit.ok()) *response = *std::move(deficit);
     return deficit.status();
+  });
+}
+
+PlanningService::Reactor* PlanningService::PlanDelivery(Context* context, const v1::PlanDeliveryRequest* request,
+                                                        v1::Delivery* response) {
+  return answer_later(context, request, backend_, [this, context, request, response]() -> absl::Status {
+    auto delivery = plan_delivery(backend_, *request, caller_has_left(context));
+    if (delivery.ok()) *response = *std::move(delivery);
+    return delivery.status();
   });
 }
 

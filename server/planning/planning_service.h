@@ -16,6 +16,7 @@ class PlanningService : public v1::PlanningService::CallbackService {
   Reactor* MakeTarget(Context* context, const v1::MakeTargetRequest* request, v1::Operation* response) override;
   Reactor* ProposePlan(Context* context, const v1::ProposePlanRequest* request, v1::Operation* response) override;
   Reactor* MeasureDeficit(Context* context, const v1::MeasureDeficitRequest* request, v1::Deficit* response) override;
+  Reactor* PlanDelivery(Context* context, const v1::PlanDeliveryRequest* request, v1::Delivery* response) override;
 
  private:
   Backend& backend_;

@@ -55,6 +55,8 @@ std::vector<Row> rows_about(const Possessions& theirs) {
       {"PlanningService/MakeTarget", below(theirs.patient, R"(,"spec":{"scan":")" + theirs.scan + "\"}")},
       {"PlanningService/MeasureDeficit", R"({"scan":")" + theirs.scan + R"(","targetScan":")" + theirs.scan + "\"}"},
       {"PlanningService/ProposePlan", below(theirs.patient, R"(,"spec":{"targetScan":")" + theirs.scan + "\"}")},
+      {"PlanningService/ProposePlan", R"({"spec":{"plan":{"model":")" + theirs.model + "\"}}}"},
+      {"PlanningService/PlanDelivery", R"({"plan":{"model":")" + theirs.model + "\"}}"},
       {"SimulationService/CreateSimulation", R"({"spec":{"model":")" + theirs.model + "\"}}"},
       {"SimulationService/CheckPlan", R"({"spec":{"model":")" + theirs.model + "\"}}"},
       {"SimulationService/FindShape", R"({"spec":{"model":")" + theirs.model + "\"}}"},

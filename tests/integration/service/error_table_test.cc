@@ -94,11 +94,16 @@ std::vector<Row> patient_rows() {
 
 std::vector<Row> simulation_rows() {
   const std::string simulations = "SimulationService/";
+  const std::string planning = "PlanningService/";
   return {
       invalid(simulations + "CreateSimulation", R"({"simulationId":"X"})", {"simulation_id", "spec"}),
       absent(simulations + "CreateSimulation",
              R"({"spec":{"model":"patients/anna/models/none","films":[{"name":"f","belowLayer":"skin","nXi":2,"nEta":2,
                  "zones":[{"name":"z","box":{"xiMin":0,"xiMax":1,"etaMin":0,"etaMax":1}}]}]},"validateOnly":true})"),
+      invalid(planning + "ProposePlan", R"({"parent":"patients/anna"})", {"spec"}),
+      absent(planning + "ProposePlan", R"({"parent":"patients/berta","spec":{}})"),
+      invalid(planning + "PlanDelivery", "{}", {"plan"}),
+      absent(planning + "PlanDelivery", R"({"plan":{"model":"patients/anna/models/none"}})"),
       invalid(simulations + "CheckPlan", "{}", {"spec"}),
       absent(simulations + "CheckPlan", R"({"spec":{"model":"patients/anna/models/none"}})"),
       invalid(simulations + "FindShape", "{}", {"spec"}),

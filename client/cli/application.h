@@ -71,6 +71,7 @@ void add_simulation_commands(CLI::App& root, Application& application);
 void add_watch_command(CLI::App& root, Application& application);
 void add_export_command(CLI::App& root, Application& application);
 void add_evaluate_command(CLI::App& root, Application& application);
+void add_propose_command(CLI::App& root, Application& application);
 void add_shape_command(CLI::App& root, Application& application);
 void add_target_command(CLI::App& root, Application& application);
 void add_operation_commands(CLI::App& root, Application& application);

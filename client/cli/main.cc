@@ -21,6 +21,7 @@ constexpr char kExamples[] =
     "  lipofill run jaw_angle.json --out result --spawn       simulate a plan, nothing else needed\n"
     "  lipofill run jaw_angle.json --out result               the same on the daemon at $LIPOFILL_SERVER\n"
     "  lipofill evaluate result --target goal.obj             how far the simulated skin is from a goal\n"
+    "  lipofill propose jaw_angle.json --target goal.obj --out proposed --spawn    volumes that fill what is missing\n"
     "  lipofill scan extract head.nii.gz --out skin.ply       the skin in a CT\n"
     "  lipofill simulation list --json                        for scripts: every command has --json\n"
     "  lipofill COMMAND --help                                examples of each command\n\n";
@@ -35,6 +36,7 @@ void add_all_commands(CLI::App& root, Application& application) {
   add_watch_command(root, application);
   add_export_command(root, application);
   add_evaluate_command(root, application);
+  add_propose_command(root, application);
   add_shape_command(root, application);
   add_target_command(root, application);
   add_render_command(root, application);

@@ -1,36 +1,26 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "client/cli/application.h"
-#include "client/cli/private_daemon.h"
 #include "client/cli/progress_line.h"
+#include "client/cli/run_ground.h"
 #include "client/cli/run_record.h"
 #include "client/cpp/frame_watcher.h"
 #include "client/cpp/io/result_folder.h"
-#include "client/cpp/plan_file.h"
 #include "lipofill/v1/patient_service.pb.h"
 #include "lipofill/v1/simulation_service.pb.h"
 
 namespace lipofill::client {
 
-struct RunOptions {
-  std::string plan;
-  std::string out;
-  std::string patient;    ///< is one on the daemon; where it is empty, one is made
-  std::string scan;       ///< takes the place of the plan's
-  std::string bone;       ///< takes the place of the plan's
-  std::string landmarks;  ///< takes the place of the plan's
-  std::optional<v1::ScanUnit> unit;
+struct RunOptions : GroundOptions {
   std::optional<double> interval_ms;
   bool preview = false;  ///< a coarse model's settled shape first
   std::string evaluate;  ///< a target surface; empty: none
   v1::ScanUnit target_unit = v1::MILLIMETRE;
-  bool spawn = false;
   bool fast = false;  ///< the settled shape in few steps, in place of the plan's steps
   bool keep = true;
   bool picture = true;
@@ -47,11 +37,7 @@ class Run {
 
  private:
   absl::Status read_plan();
-  absl::Status reach_daemon();
-  absl::Status prepare_patient();
-  absl::Status send_scan();
-  absl::StatusOr<v1::Scan> send_surface(const std::filesystem::path& file, v1::ScanUnit unit, const char* what);
-  absl::Status build();
+  absl::Status prepare_ground();
   absl::Status create_simulation();
   absl::Status simulate();
   absl::Status write_results();
@@ -71,15 +57,9 @@ class Run {
   Application& application_;
   const RunOptions options_;
   ProgressLine progress_;
+  RunGround ground_;
   ResultFolder folder_;
   RunRecord record_;
-  PlanFile plan_;
-  std::unique_ptr<PrivateDaemon> daemon_;
-  std::optional<Connection> connection_;
-  std::string patient_;
-  bool made_patient_ = false;
-  v1::ModelSpec model_spec_;
-  v1::Model model_;
   v1::Simulation simulation_;
   bool preview_told_ = false;
   std::vector<v1::SeriesRow> rows_;

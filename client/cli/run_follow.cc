@@ -28,7 +28,7 @@ constexpr double kDefaultEndSeconds = 60.0;
 v1::WatchRequest Run::watch_request() const {
   v1::WatchRequest request;
   request.set_simulation(simulation_.name());
-  const double interval_ms = plan_.plan.output().interval_ms();
+  const double interval_ms = ground_.plan().plan.output().interval_ms();
   request.set_delivery(interval_ms > 0.0 ? v1::WatchRequest::EVERY : v1::WatchRequest::LATEST);
   const v1::TimeControl& time = simulation_.spec().time();
   const double end_ms = 1e3 * (time.has_end_s() ? time.end_s() : kDefaultEndSeconds);
@@ -46,14 +46,14 @@ absl::Status Run::take_frames(const v1::WatchRequest& request, const std::functi
   handlers.on_frame = [this](const Frame& frame) {
     return frame.preview ? folder_.write_preview(frame.fields) : folder_.write_frame(frame.time_s, frame.fields);
   };
-  return watch(*connection_, request, handlers);
+  return watch(ground_.connection(), request, handlers);
 }
 
 /// Frames are taken and written on a thread of their own, so that the progress goes on while a file
 /// is written.
 absl::Status Run::simulate() {
   v1::WatchRequest request = watch_request();
-  auto meshes = mesh_names(*connection_, simulation_);
+  auto meshes = mesh_names(ground_.connection(), simulation_);
   if (!meshes.ok()) return meshes.status();
   request.mutable_meshes()->Assign(meshes->begin(), meshes->end());
   absl::Status frames;
@@ -74,7 +74,7 @@ absl::Status Run::simulate() {
   if (application_.interrupt().requested()) {
     stop_simulation();
     // The state it had reached is worth keeping.
-    const Connection last_words = connection_->without_stop();
+    const Connection last_words = ground_.connection().without_stop();
     if (auto state = get_simulation(last_words, simulation_.name()); state.ok()) simulation_ = *std::move(state);
     (void)fetch_series(last_words, simulation_.name(), &rows_);
     (void)write_figures(folder_.path(), record_.plan, simulation_, rows_);
@@ -89,13 +89,14 @@ absl::Status Run::simulate() {
 absl::Status Run::start_and_follow(const std::stop_token& frames_ended) {
   v1::StartSimulationRequest request;
   request.set_name(simulation_.name());
-  const auto started = connection_->call<SimulationService>(&SimulationService::Stub::StartSimulation, request);
+  const auto started = ground_.connection().call<SimulationService>(&SimulationService::Stub::StartSimulation, request);
   if (!started.ok()) {
     // No frame ever comes without a start: deleting the simulation ends the taker that waits for
     // them.
     v1::DeleteSimulationRequest remove;
     remove.set_name(simulation_.name());
-    (void)connection_->without_stop().call<SimulationService>(&SimulationService::Stub::DeleteSimulation, remove);
+    (void)ground_.connection().without_stop().call<SimulationService>(&SimulationService::Stub::DeleteSimulation,
+                                                                      remove);
     return started.status();
   }
   std::mutex mutex;
@@ -104,7 +105,7 @@ absl::Status Run::start_and_follow(const std::stop_token& frames_ended) {
   while (!frames_ended.stop_requested()) {
     // A call that fails here is seen by the taker too, which takes the stream up again or gives up.
     tell_preview();
-    if (fetch_series(*connection_, simulation_.name(), &rows_).ok()) show_progress();
+    if (fetch_series(ground_.connection(), simulation_.name(), &rows_).ok()) show_progress();
     wake.wait_for(lock, frames_ended, kFollowPeriod, [&frames_ended] { return frames_ended.stop_requested(); });
   }
   return absl::OkStatus();
@@ -113,7 +114,7 @@ absl::Status Run::start_and_follow(const std::stop_token& frames_ended) {
 /// Tells of the preview once, when it is there or has failed.
 void Run::tell_preview() {
   if (preview_told_ || !simulation_.spec().preview()) return;
-  const auto simulation = get_simulation(*connection_, simulation_.name());
+  const auto simulation = get_simulation(ground_.connection(), simulation_.name());
   if (!simulation.ok()) return;
   const v1::PreviewSummary& preview = simulation->summary().preview();
   if (preview.state() == v1::PreviewSummary::PENDING || preview.state() == v1::PreviewSummary::RUNNING) return;
@@ -123,7 +124,7 @@ void Run::tell_preview() {
 
 void Run::show_progress() {
   if (!rows_.empty()) return progress_.show(progress_text(rows_.back()));
-  const auto simulation = get_simulation(*connection_, simulation_.name());
+  const auto simulation = get_simulation(ground_.connection(), simulation_.name());
   if (simulation.ok() && simulation->has_recovery()) return progress_.show(simulation->reason());
   if (simulation.ok() && simulation->state() == v1::Simulation::QUEUED) {
     progress_.show(
@@ -135,8 +136,8 @@ void Run::stop_simulation() {
   v1::StopSimulationRequest request;
   request.set_name(simulation_.name());
   // A simulation that has ended meanwhile refuses, which is just as good.
-  (void)connection_->without_stop().call<SimulationService>(&SimulationService::Stub::StopSimulation, request,
-                                                            std::chrono::seconds(10));
+  (void)ground_.connection().without_stop().call<SimulationService>(&SimulationService::Stub::StopSimulation, request,
+                                                                    std::chrono::seconds(10));
 }
 
 }  // namespace lipofill::client

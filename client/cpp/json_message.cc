@@ -89,11 +89,11 @@ void find_unknown_fields(const json& value, const Descriptor& type, const std::s
   }
 }
 
-std::string to_json(const google::protobuf::Message& message, bool whitespace) {
+std::string to_json(const google::protobuf::Message& message, bool whitespace, bool with_unset = true) {
   google::protobuf::util::JsonPrintOptions options;
   options.add_whitespace = whitespace;
   options.preserve_proto_field_names = true;
-  options.always_print_primitive_fields = true;
+  options.always_print_primitive_fields = with_unset;
   std::string text;
   // Fails only for an Any of a type this program does not know, which then prints as nothing.
   (void)google::protobuf::util::MessageToJsonString(message, &text, options);
@@ -119,6 +119,9 @@ absl::Status load_message(const std::filesystem::path& path, google::protobuf::M
 
 std::string message_json(const google::protobuf::Message& message) {
   return to_json(message, true);
+}
+std::string compact_message_json(const google::protobuf::Message& message) {
+  return to_json(message, true, false);
 }
 std::string message_json_line(const google::protobuf::Message& message) {
   return to_json(message, false) + "\n";

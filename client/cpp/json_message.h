@@ -16,7 +16,10 @@ absl::Status load_message(const std::filesystem::path& path, google::protobuf::M
 /// The proto3 JSON form of a message, with the schema's own field names and no field left out.
 std::string message_json(const google::protobuf::Message& message);
 
-/// The same on one line, for streams of messages.
+/// The same without the fields that are not set, for files that people read and programs take back.
+std::string compact_message_json(const google::protobuf::Message& message);
+
+/// The same on one line, with every field, for streams of messages.
 std::string message_json_line(const google::protobuf::Message& message);
 
 }  // namespace lipofill::client

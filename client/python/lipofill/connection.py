@@ -11,6 +11,7 @@ from lipofill.operations import Operations
 from lipofill.patients import Patients
 from lipofill.plans import Plan
 from lipofill.progress import ProgressCallback
+from lipofill.proposals import Proposals
 from lipofill.retries import RetryPolicy
 from lipofill.runs import Collections, Run
 from lipofill.scans import Scans
@@ -40,9 +41,9 @@ class Connection(Channel):
 
     Attributes
     ----------
-    patients, scans, models, targets, simulations, operations
+    patients, scans, models, targets, proposals, simulations, operations
         What the daemon holds.
-    patient_stub, simulation_stub, frame_stub, operation_stub
+    patient_stub, simulation_stub, frame_stub, operation_stub, planning_stub
         The generated stubs, for ``call``.
     """
 
@@ -60,6 +61,7 @@ class Connection(Channel):
         self.operations = Operations(self)
         self.models = Models(self, self.operations)
         self.targets = Targets(self, self.operations)
+        self.proposals = Proposals(self, self.operations)
         self.simulations = Simulations(self)
 
     def run(

@@ -1,0 +1,85 @@
+"""Plans that are proposed for a target, and the lists by which they are delivered."""
+
+from __future__ import annotations
+
+from typing import Optional
+
+from lipofill.channel import Channel
+from lipofill.errors import LipofillError, NotFoundError, UnavailableError
+from lipofill.operations import Operations
+from lipofill.progress import ProgressCallback
+from lipofill.retries import with_request_id
+from lipofill.v1 import operation_service_pb2 as pb_operation
+from lipofill.v1 import planning_service_pb2 as pb
+from lipofill.v1 import simulation_pb2
+
+_MOST_RESTARTS = 10
+
+
+class Proposals:
+    """Proposes plans and lists how they are delivered."""
+
+    def __init__(self, channel: Channel, operations: Operations) -> None:
+        self._channel = channel
+        self._operations = operations
+        self._stub = channel.planning_stub
+
+    def propose(
+        self, patient: str, spec: pb.ProposalSpec, *, progress: Optional[ProgressCallback] = None
+    ) -> pb.Proposal:
+        """Proposes a plan and waits for it. An interruption (Ctrl-C, an exception of `progress`)
+        cancels the work too. Equal specs have equal proposals, also after a restart of the daemon.
+
+        Raises
+        ------
+        InvalidArgumentError
+            With a violation for every field that is out of its bounds.
+        FailedPreconditionError
+            Nothing is missing, the zones do not reach what is, or no volumes are within the bounds.
+        """
+        request = with_request_id(pb.ProposePlanRequest(parent=patient, spec=spec))
+        for _ in range(_MOST_RESTARTS):
+            done = self._propose(request, progress)
+            if done is not None:
+                break
+        else:
+            raise UnavailableError("the daemon ended again and again while it proposed the plan")
+        proposal = pb.Proposal()
+        if not done.response.Unpack(proposal):
+            raise LipofillError(f"operation {done.name} ended without a proposal")
+        return proposal
+
+    def _propose(
+        self, request: pb.ProposePlanRequest, progress: Optional[ProgressCallback]
+    ) -> Optional[pb_operation.Operation]:
+        """None where the operation went with a daemon that ended: the same request begins it
+        anew.
+        """
+        operation = self._channel.call(self._stub.ProposePlan, request)
+        try:
+            return self._operations.wait(operation, progress=progress)
+        except NotFoundError as error:
+            if error.from_daemon and operation.name in error.message:
+                return None
+            raise
+        except LipofillError:
+            raise
+        except BaseException:
+            self._operations.cancel(operation.name)
+            raise
+
+    def deliver(
+        self,
+        plan: simulation_pb2.SimulationSpec,
+        *,
+        max_pass_ml: Optional[float] = None,
+        tunnel_spacing_mm: Optional[float] = None,
+        compare: bool = False,
+    ) -> pb.Delivery:
+        """The injection list of a plan; with `compare` also how far the skin of the plan as given
+        lies from that of the plan.
+        """
+        request = pb.PlanDeliveryRequest(
+            plan=plan, max_pass_ml=max_pass_ml, tunnel_spacing_mm=tunnel_spacing_mm, compare=compare
+        )
+        return self._channel.call(self._stub.PlanDelivery, request)

@@ -41,7 +41,7 @@ struct FittedVolumes {
 /// held factor (TrialShape) at the first two shapes, and then from what the steps do (Broyden).
 /// Shapes on the way follow one another; the last is from rest, and depends on its volumes alone.
 /// What is found depends on what is passed to create() and find(), and not on earlier calls.
-/// Checked by tests/unit/planning/proposal_fit_test.cc.
+/// Checked by tests/unit/planning/proposal_test.cc.
 class VolumeFit {
  public:
   /// @param one_each  with_one_injection_each()

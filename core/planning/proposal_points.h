@@ -15,7 +15,7 @@ namespace lipofill::planning {
 
 /// Points that move with the skin of a model, bilinear between its nodes, with the area each stands
 /// for: the scan's vertices that ride on it, or the nodes where there is no scan.
-/// Checked by tests/unit/planning/proposal_points_test.cc.
+/// Checked by tests/unit/planning/proposal_test.cc.
 struct SkinPoints {
   geometry::SurfaceMesh rest;                ///< the patch they make at rest
   std::vector<geometry::ChartPoint> place;   ///< a place a point
@@ -42,7 +42,7 @@ struct TargetSide {
 
 /// Signed distance to a target and its gradient, for many points near one patch. Only the part of
 /// the target near the patch is searched. Distances are those of
-/// geometry::compute_signed_distances. Checked by tests/unit/planning/proposal_points_test.cc.
+/// geometry::compute_signed_distances. Checked by tests/unit/planning/proposal_test.cc.
 class TargetDistance {
  public:
   /// @param patch  at rest; points asked about are less than `reach` from it
@@ -64,7 +64,7 @@ class TargetDistance {
 /// What the skin at rest lacks to the target, positive where the target lies outside, at the nodes
 /// of the skin: smoothed over the chart by a Gaussian of `length`, so that noise of a scan is not
 /// taken for a hollow. Nodes that have no target opposite take the mean of those around, 0 where
-/// none has. Checked by tests/unit/planning/proposal_points_test.cc.
+/// none has. Checked by tests/unit/planning/proposal_test.cc.
 geometry::ScalarField smooth_deficit(const model::FaceModel& model, const TargetDistance& target, double length);
 
 }  // namespace lipofill::planning

@@ -31,7 +31,7 @@ bool dominates(const TradeOff& one, const TradeOff& other);
 /// pressure reach. Points that another one dominates are left out; what was fitted never is.
 /// @param n_points  wanted on the curve, with what was fitted
 /// @param cost      out: added to
-/// Checked by tests/unit/planning/tradeoff_test.cc.
+/// Checked by tests/unit/planning/proposal_test.cc.
 absl::StatusOr<std::vector<TradeOff>> trace_trade_off(const ProposalCase& face, VolumeFit& fit,
                                                       const FittedVolumes& fitted, const ProposalBounds& bounds,
                                                       int n_points, const Unwanted& unwanted, ProposalCost& cost);

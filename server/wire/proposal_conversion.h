@@ -8,7 +8,7 @@ namespace lipofill::server {
 
 /// What to propose, in SI. INVALID_ARGUMENT with field violations below "plan", "bounds", "zones",
 /// "spread" and of the other fields of the message. Checked by
-/// tests/unit/server/wire/proposal_conversion_test.cc.
+/// tests/integration/service/proposal_test.cc.
 absl::StatusOr<planning::ProposalRequest> to_proposal_request(const v1::ProposalSpec& spec);
 
 /// A proposal, without how long it took. Its plan is that of the request with what was proposed:

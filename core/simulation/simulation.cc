@@ -4,6 +4,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -85,6 +86,8 @@ void Simulation::Impl::advance() {
     try_with_smaller_steps();
     if (!attempt.accepted) return fail(attempt.reason);
     accept(attempt.state.time - state.time);
+  } catch (const std::bad_alloc&) {
+    fail(absl::StrCat("at ", state.time, " s the machine ran out of memory"));
   } catch (const std::exception& error) {
     fail(absl::StrCat("ran out of a resource: ", error.what()));
   }

@@ -1,6 +1,7 @@
 #include "server/sessions/simulation_run.h"
 
 #include <exception>
+#include <new>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -82,10 +83,16 @@ void SimulationRun::advance(bool previews) {
     const simulation::Simulation& simulation = *live_.simulation();
     const bool goes_on = simulation.phase() == Phase::kSettled && replay_.goes_on_after(simulation.report().step);
     if (simulation.phase() != Phase::kRunning && !goes_on) finish(state_of(simulation.phase()), simulation.reason());
+  } catch (const std::bad_alloc&) {
+    fail_step("the daemon ran out of memory; run the plan again when others have ended");
   } catch (const std::exception& error) {
-    const uint64_t step = live_.figures().latest().report.step;
-    finish(SimulationState::kFailed, absl::StrCat("step ", step + 1, ": ", error.what()));
+    fail_step(error.what());
   }
+}
+
+void SimulationRun::fail_step(const std::string& why) {
+  const uint64_t step = live_.figures().latest().report.step;
+  finish(SimulationState::kFailed, absl::StrCat("step ", step + 1, ": ", why));
 }
 
 /// Repeats what took effect after the step it is at.

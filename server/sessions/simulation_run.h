@@ -66,6 +66,7 @@ class SimulationRun {
 
  private:
   void advance(bool previews);
+  void fail_step(const std::string& why);
   void catch_up();
   absl::Status keep_automatically();
   void checkpoint_when_due();

@@ -15,7 +15,9 @@ from lipofill.errors import LipofillError
 Request = TypeVar("Request")
 
 # Asking again changes nothing; ending or cancelling what is ended or cancelled neither.
-_REPEATABLE = re.compile(r"(Get|List|Wait|Evaluate|Check|Measure|Delete|Cancel|Acknowledge)[A-Z]\w*Request")
+_REPEATABLE = re.compile(
+    r"((Get|List|Wait|Evaluate|Check|Measure|Delete|Cancel|Acknowledge)[A-Z]\w*|PlanDelivery)Request"
+)
 
 
 @dataclass(frozen=True)

@@ -142,18 +142,21 @@ TEST(Chaos, WhatWasAcknowledgedHoldsHoweverOftenTheDaemonIsKilled) {
 
   int commands = 0;
   size_t results = 0;
+  int lacked_memory = 0;
   for (const auto& planner : planners) {
     planner->check_ledger();
     commands += planner->ledger().commands;
     results += planner->ledger().results.size();
+    lacked_memory += planner->ledger().lacked_memory;
   }
   uploader.check();
   daemon.kill_and_restart();
   check_files(daemon.data());
   std::cout << kills << " kills, seed " << seed << ": " << commands << " commands acknowledged, " << results
-            << " results equal to an unbroken run, " << uploader.complete() << " scans, " << spectator.frames()
-            << " frames in " << spectator.epochs() << " epochs; " << meddler.removed() << " checkpoints removed, "
-            << meddler.replaced() << " replaced by others, " << meddler.flipped() << " bits flipped";
+            << " results equal to an unbroken run, " << lacked_memory << " that lacked memory, " << uploader.complete()
+            << " scans, " << spectator.frames() << " frames in " << spectator.epochs() << " epochs; "
+            << meddler.removed() << " checkpoints removed, " << meddler.replaced() << " replaced by others, "
+            << meddler.flipped() << " bits flipped";
   for (size_t i = 0; i < kTormentNames.size(); ++i) {
     std::cout << "; " << kTormentNames[i] << ": " << tormentor.count(static_cast<Torment>(i));
   }

@@ -21,6 +21,7 @@ struct Ledger {
   std::map<std::string, std::string> results;  ///< simulation that has ended: its state hash
   std::set<std::string> deleted;
   int commands = 0;
+  int lacked_memory = 0;  ///< simulations that failed for want of it
 };
 
 /// A client that creates simulations, injects, pauses, resumes, keeps and restores their states,
@@ -56,6 +57,7 @@ class Planner {
   void go_back();
   void branch();
   void end_it();
+  bool lacked_memory(const v1::Simulation& ended);
   void check_result(const std::string& name, const Course& course, uint64_t first_row);
   void check_rows(const std::string& name, uint64_t first, uint64_t last);
   void check_plan(const v1::Simulation& simulation, const Course& course);

@@ -73,15 +73,7 @@ void add_propose_command(CLI::App& root, Application& application) {
   command->add_option("plan", options->plan, "PLAN.json")->required();
   command->add_option("--target", options->target, ".obj, .ply or .stl, or patients/ID/scans/ID")->required();
   command->add_option("--out", options->out, "folder of results; made when missing")->required();
-  command->add_flag("--spawn", options->spawn, "start a private lipofilld for this and stop it after")
-      ->excludes(command->get_option("--server"));
-  command->add_option("--patient", options->patient, "a patient the daemon has; default: a new one");
-  command->add_option("--scan", options->scan, "surface in place of the plan's");
-  command->add_option("--bone", options->bone, "surface of the bone in place of the plan's, in the frame of the scan");
-  command->add_option("--landmarks", options->landmarks,
-                      "landmarks in place of the plan's; FILE.json or FILE.json#object");
-  command->add_option("--unit", options->unit, "unit of the scan, and of what --bone names: mm, cm or m")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+  add_ground_options(*command, *options, "start a private lipofilld for this and stop it after");
   command->add_option("--target-unit", options->target_unit, "unit of the target's numbers: mm (default), cm or m")
       ->transform(CLI::CheckedTransformer(kUnitNames));
   command->add_flag("--keep", options->keep, "keep patient, scans and model on the daemon");

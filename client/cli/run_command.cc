@@ -30,17 +30,8 @@ void add_run_command(CLI::App& root, Application& application) {
                                   [&application, options] { return Run(application, *options).carry_out(); });
   command->add_option("plan", options->plan, "PLAN.json")->required();
   command->add_option("--out", options->out, "folder of results; made when missing")->required();
-  command
-      ->add_flag("--spawn", options->spawn,
-                 "start a private lipofilld for this run and stop it after; its state stays in OUT/.lipofilld")
-      ->excludes(command->get_option("--server"));
-  command->add_option("--patient", options->patient, "a patient the daemon has; default: a new one");
-  command->add_option("--scan", options->scan, "surface in place of the plan's");
-  command->add_option("--bone", options->bone, "surface of the bone in place of the plan's, in the frame of the scan");
-  command->add_option("--landmarks", options->landmarks,
-                      "landmarks in place of the plan's; FILE.json or FILE.json#object");
-  command->add_option("--unit", options->unit, "unit of the scan, and of what --bone names: mm, cm or m")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+  add_ground_options(*command, *options,
+                     "start a private lipofilld for this run and stop it after; its state stays in OUT/.lipofilld");
   command
       ->add_option("--interval-ms", options->interval_ms,
                    "simulated time between written files, in place of the plan's; 0: only first and last")

@@ -8,6 +8,7 @@
 #include "absl/strings/str_split.h"
 #include "client/cli/describe.h"
 #include "client/cli/listing.h"
+#include "client/cli/units.h"
 #include "client/cpp/landmarks_file.h"
 #include "client/cpp/model_build.h"
 #include "client/cpp/result_text.h"
@@ -17,6 +18,17 @@
 namespace lipofill::client {
 
 using v1::PatientService;
+
+void add_ground_options(CLI::App& command, GroundOptions& options, const std::string& help_of_spawn) {
+  command.add_flag("--spawn", options.spawn, help_of_spawn)->excludes(command.get_option("--server"));
+  command.add_option("--patient", options.patient, "a patient the daemon has; default: a new one");
+  command.add_option("--scan", options.scan, "surface in place of the plan's");
+  command.add_option("--bone", options.bone, "surface of the bone in place of the plan's, in the frame of the scan");
+  command.add_option("--landmarks", options.landmarks,
+                     "landmarks in place of the plan's; FILE.json or FILE.json#object");
+  command.add_option("--unit", options.unit, "unit of the scan, and of what --bone names: mm, cm or m")
+      ->transform(CLI::CheckedTransformer(kUnitNames));
+}
 
 absl::Status RunGround::read_plan() {
   auto plan = load_plan(options_.plan);

@@ -26,6 +26,10 @@ struct GroundOptions {
   bool spawn = false;
 };
 
+/// The options --spawn to --unit of a command that carries out a plan.
+/// @param help_of_spawn  what --spawn does
+void add_ground_options(CLI::App& command, GroundOptions& options, const std::string& help_of_spawn);
+
 /// What a plan needs before anything is made of it: the plan itself, a daemon, a patient, the scan
 /// and the model. Each member function is one step, in their order.
 class RunGround {

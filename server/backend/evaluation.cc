@@ -1,10 +1,9 @@
 #include "server/backend/evaluation.h"
 
-#include <cstring>
-
 #include "absl/strings/str_cat.h"
 #include "core/base/units.h"
 #include "core/geometry/surface_distance.h"
+#include "server/backend/slice_arrays.h"
 #include "server/wire/report_conversion.h"
 #include "server/wire/target_conversion.h"
 
@@ -13,17 +12,6 @@ namespace {
 
 /// Eight bytes a vertex must stay well below the 4 MiB of a message.
 constexpr size_t kMaxPatchVertices = 400'000;
-
-template <typename T, typename Arrays>
-absl::StatusOr<std::vector<T>> find_array(const Arrays& arrays, const std::string& name) {
-  for (const v1::ArraySlice& array : arrays) {
-    if (array.name() != name) continue;
-    std::vector<T> values(array.data().size() / sizeof(T));
-    std::memcpy(values.data(), array.data().data(), values.size() * sizeof(T));
-    return values;
-  }
-  return absl::DataLossError(absl::StrCat("the result has no array ", name));
-}
 
 Eigen::Vector3d vector_at(const std::vector<float>& values, size_t i) {
   return kMetresPerMillimetre * Eigen::Vector3d(values[3 * i], values[3 * i + 1], values[3 * i + 2]);
@@ -42,7 +30,7 @@ void place_points(SkinPatch& patch, const std::vector<Eigen::Vector3d>& rest, co
 
 absl::StatusOr<SkinPatch> make_scan_patch(const model::FaceModel& model, const v1::FrameSlice& frame) {
   const geometry::SurfaceMesh& scan = model.geometry.scan;
-  const auto displacement = find_array<float>(frame.fields(), "scan.displacement");
+  const auto displacement = read_array<float>(frame.fields(), "scan.displacement");
   if (!displacement.ok()) return displacement.status();
   if (displacement->size() != 3 * static_cast<size_t>(scan.n_vertices())) {
     return absl::DataLossError("the result does not fit the model's scan");
@@ -66,9 +54,9 @@ absl::StatusOr<SkinPatch> make_scan_patch(const model::FaceModel& model, const v
 }
 
 absl::StatusOr<SkinPatch> make_square_patch(const v1::MeshSlice& meshes, const v1::FrameSlice& frame) {
-  const auto points = find_array<float>(meshes.arrays(), "skin.points");
-  const auto cells = find_array<uint32_t>(meshes.arrays(), "skin.cells");
-  const auto displacement = find_array<float>(frame.fields(), "skin.displacement");
+  const auto points = read_array<float>(meshes.arrays(), "skin.points");
+  const auto cells = read_array<uint32_t>(meshes.arrays(), "skin.cells");
+  const auto displacement = read_array<float>(frame.fields(), "skin.displacement");
   if (!points.ok()) return points.status();
   if (!cells.ok()) return cells.status();
   if (!displacement.ok()) return displacement.status();

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
-#include "core/base/field_violations.h"
 #include "core/base/units.h"
 #include "core/geometry/surface_cleaning.h"
 #include "core/geometry/surface_topology.h"
@@ -13,13 +11,11 @@
 #include "core/planning/skin_surface.h"
 #include "core/planning/symmetry_index.h"
 #include "core/planning/symmetry_plane.h"
+#include "server/backend/slice_arrays.h"
 #include "server/wire/target_conversion.h"
 
 namespace lipofill::server {
 namespace {
-
-constexpr double kMostRimMm = 50.0;
-constexpr double kDefaultRimMm = 5.0;
 
 /// A part of the patch, before and after.
 struct PatchPart {
@@ -104,16 +100,6 @@ absl::Status add_symmetry(const model::FaceModel& model, const SkinPatch& patch,
   return absl::OkStatus();
 }
 
-std::vector<float> find_zone_field(const v1::FrameSlice& frame) {
-  for (const v1::ArraySlice& field : frame.fields()) {
-    if (field.name() != "skin.zone") continue;
-    std::vector<float> values(field.data().size() / sizeof(float));
-    std::memcpy(values.data(), field.data().data(), values.size() * sizeof(float));
-    return values;
-  }
-  return {};
-}
-
 /// The nearest node of the skin's grid, of which xi runs fastest.
 size_t find_node(const geometry::LayeredGrid& grid, const geometry::ChartPoint& place) {
   const auto along = [](double share, int n) {
@@ -124,18 +110,10 @@ size_t find_node(const geometry::LayeredGrid& grid, const geometry::ChartPoint& 
 
 }  // namespace
 
-absl::StatusOr<double> read_rim_width(const v1::EvaluateSimulationRequest& request) {
-  const double rim_mm = request.has_rim_mm() ? request.rim_mm() : kDefaultRimMm;
-  FieldViolations violations;
-  violations.check_range("rim_mm", rim_mm, 0.0, kMostRimMm, "mm");
-  if (!violations.empty()) return violations.to_status();
-  return rim_mm * kMetresPerMillimetre;
-}
-
 PatchZones find_patch_zones(const model::FaceModel& model, const v1::SimulationSpec& spec, const SkinPatch& patch,
                             const v1::FrameSlice& frame) {
   PatchZones zones;
-  const std::vector<float> numbers = find_zone_field(frame);
+  const std::vector<float> numbers = read_array<float>(frame.fields(), "skin.zone").value_or(std::vector<float>());
   if (numbers.empty()) return zones;
   for (const v1::Film& film : spec.films()) {
     for (const v1::Zone& zone : film.zones()) zones.names.push_back(zone.name());

@@ -15,9 +15,6 @@
 
 namespace lipofill::server {
 
-/// The width of the rim [m] that a request leaves out.
-absl::StatusOr<double> read_rim_width(const v1::EvaluateSimulationRequest& request);
-
 /// The zones of a plan over the vertices of a patch.
 struct PatchZones {
   std::vector<std::string> names;  ///< in the order of the plan

@@ -11,6 +11,7 @@
 #include "server/wire/frame_encoding.h"
 #include "server/wire/names.h"
 #include "server/wire/report_conversion.h"
+#include "server/wire/rim_width.h"
 
 namespace lipofill::server {
 namespace {
@@ -106,8 +107,9 @@ absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::E
   if (!id.ok()) return id.status();
   const auto scan = parse_scan_name(request.target_scan(), "target_scan");
   if (!scan.ok()) return scan.status();
-  const auto rim_width = read_rim_width(request);
-  if (!rim_width.ok()) return rim_width.status();
+  FieldViolations violations;
+  const double rim_width = read_rim_width(request, violations);
+  if (!violations.empty()) return violations.to_status();
   const auto record = backend.store.get_simulation(*id);
   if (!record.ok()) return record.status();
   const auto target = read_scan_surface(backend, scan->patient, scan->id);
@@ -126,7 +128,7 @@ absl::StatusOr<v1::Evaluation> evaluate_simulation(Backend& backend, const v1::E
   v1::SimulationSpec spec;
   spec.ParseFromString(record->spec_message);
   const PatchZones zones = find_patch_zones(**model, spec, *patch, result->frame);
-  const absl::Status added = add_details(**model, *patch, zones, *target, *rim_width, unwanted, *evaluation);
+  const absl::Status added = add_details(**model, *patch, zones, *target, rim_width, unwanted, *evaluation);
   if (!added.ok()) return added;
   return evaluation;
 }

@@ -36,6 +36,17 @@ absl::StatusOr<geometry::SurfaceMesh> parse_scan(const ScanRecord& scan, std::st
   return geometry::read_surface(bytes, format_of(scan), metres_per_unit(scan));
 }
 
+absl::Status check_complete(Backend& backend, const std::string& patient, const std::string& scan,
+                            const std::string& field) {
+  const auto record = backend.store.get_scan(patient, scan);
+  if (!record.ok()) return record.status();
+  if (record->complete) return absl::OkStatus();
+  return field_violation(field,
+                         absl::StrCat("is ", scan_name(patient, scan), ", which is not complete: ",
+                                      record->received_bytes, " of ", record->size_bytes, " bytes are here"),
+                         absl::StatusCode::kFailedPrecondition);
+}
+
 absl::StatusOr<geometry::SurfaceMesh> read_scan_surface(Backend& backend, const std::string& patient,
                                                         const std::string& scan) {
   const auto record = backend.store.get_scan(patient, scan);

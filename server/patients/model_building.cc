@@ -3,10 +3,11 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
 #include "core/model/face_model_check.h"
+#include "server/backend/long_work.h"
 #include "server/backend/model_reading.h"
+#include "server/backend/scan_reading.h"
 #include "server/entry/unary.h"
 #include "server/sessions/identifiers.h"
-#include "server/sessions/shortage.h"
 #include "server/store/record_names.h"
 #include "server/wire/model_conversion.h"
 #include "server/wire/names.h"
@@ -23,17 +24,6 @@ namespace {
 
 /// Reading the scan is the first part of the work.
 constexpr double kScanFraction = 0.05;
-
-absl::Status check_complete(Backend& backend, const std::string& patient, const std::string& scan, const char* field) {
-  if (scan.empty()) return absl::OkStatus();
-  const auto record = backend.store.get_scan(patient, scan);
-  if (!record.ok()) return record.status();
-  if (record->complete) return absl::OkStatus();
-  return field_violation(field,
-                         absl::StrCat("is ", scan_name(patient, scan), ", which is not complete: ",
-                                      record->received_bytes, " of ", record->size_bytes, " bytes are here"),
-                         absl::StatusCode::kFailedPrecondition);
-}
 
 /// A model that is to be built: its specification as the client gave it and as the core takes it,
 /// yet without the surfaces of its scans.
@@ -57,9 +47,11 @@ absl::StatusOr<ModelOrder> read_request(Backend& backend, const std::string& pat
   violations.absorb("spec", scans.status());
   if (!violations.empty()) return violations.to_status();
   if (absl::Status small = check_size(request.spec(), backend.options.sizes); !small.ok()) return small;
-  absl::Status complete = check_complete(backend, patient, scans->skin, "spec.scan_region.scan");
-  if (complete.ok()) complete = check_complete(backend, patient, scans->bone, "spec.scan_region.bone_scan");
-  if (!complete.ok()) return complete;
+  for (const auto& [scan, field] :
+       {std::pair(scans->skin, "spec.scan_region.scan"), std::pair(scans->bone, "spec.scan_region.bone_scan")}) {
+    if (scan.empty()) continue;
+    if (absl::Status complete = check_complete(backend, patient, scan, field); !complete.ok()) return complete;
+  }
   return ModelOrder{patient, fill_tissue_figures(request.spec()), *std::move(face), *std::move(scans)};
 }
 
@@ -107,19 +99,6 @@ absl::StatusOr<std::string> build_and_keep(Backend& backend, const std::string& 
   return pack_response(to_model(*kept));
 }
 
-void run_build(Backend& backend, const std::string& operation, const ModelOrder& order, const RequestKey& request) {
-  absl::StatusOr<std::string> result = absl::UnknownError("");
-  const absl::Status status = guarded([&] {
-    result = build_and_keep(backend, operation, order, request);
-    return result.status();
-  });
-  if (!status.ok()) {
-    result = status;
-    spdlog::info("operations/{} failed: {}", operation, status.ToString());
-  }
-  backend.operations.finish(operation, std::move(result));
-}
-
 /// The operation of an equal request before a restart, of which the model is left.
 absl::StatusOr<std::optional<OperationView>> find_earlier(Backend& backend, const std::string& patient,
                                                           const RequestKey& request) {
@@ -131,19 +110,6 @@ absl::StatusOr<std::optional<OperationView>> find_earlier(Backend& backend, cons
   const auto record = backend.store.get_model(ids->patient, ids->id);
   if (!record.ok()) return record.status();
   return backend.operations.add_done(patient_name(patient), request, pack_response(to_model(*record)));
-}
-
-/// The answer to a request that is only to be checked, when nothing is wrong with it.
-OperationView checked_only(const ModelOrder& order) {
-  v1::Model model;
-  *model.mutable_spec() = order.message;
-  OperationView view;
-  view.target = patient_name(order.patient);
-  view.response_message = pack_response(model);
-  view.done = true;
-  view.progress = 1.0;
-  view.stage = "checked, not built";
-  return view;
 }
 
 }  // namespace
@@ -165,25 +131,19 @@ absl::StatusOr<OperationView> start_model_build(Backend& backend, const Principa
   if (const auto known = backend.store.get_patient(*patient); !known.ok()) return known.status();
   auto order = read_request(backend, *patient, request);
   if (!order.ok()) return order.status();
-  if (request.validate_only()) return checked_only(*order);
+  if (request.validate_only()) {
+    v1::Model model;
+    *model.mutable_spec() = order->message;
+    return checked_only(request.parent(), model, "checked, not built");
+  }
   const RequestKey key = make_request_key(caller, "BuildModel", request.request_id(), request);
   const auto earlier = find_earlier(backend, *patient, key);
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) return **earlier;
-  const auto started = backend.operations.start(request.parent(), key);
-  if (!started.ok()) return started.status();
-  if (!started->is_new) return started->operation;
-  const std::string id = started->operation.id;
-  const bool taken =
-      backend.builds.run([&backend, id, order = *std::move(order), key] { run_build(backend, id, order, key); }, id);
-  if (!taken) {
-    backend.operations.drop(id);
-    return shortage(
-        "TOO_MANY_BUILDS", 5.0,
-        absl::StrCat("too many models are waiting to be built, the bound is ", backend.builds.max_queued()));
-  }
-  spdlog::info("operations/{} builds a model of {}", id, request.parent());
-  return started->operation;
+  return start_long_work(backend, request.parent(), key, "models are waiting to be built", "builds a model of",
+                         [&backend, key, order = *std::move(order)](const std::string& operation) {
+                           return build_and_keep(backend, operation, order, key);
+                         });
 }
 
 }  // namespace lipofill::server

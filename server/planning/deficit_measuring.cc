@@ -2,10 +2,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
-#include "core/base/units.h"
 #include "core/planning/deficit.h"
 #include "server/backend/scan_reading.h"
 #include "server/wire/names.h"
+#include "server/wire/rim_width.h"
 #include "server/wire/target_conversion.h"
 
 namespace lipofill::server {
@@ -13,8 +13,6 @@ namespace {
 
 /// Four bytes a vertex must stay well below the 4 MiB of a message.
 constexpr int kMaxVertices = 800'000;
-constexpr double kMostRimMm = 50.0;
-constexpr double kDefaultRimMm = 5.0;
 
 }  // namespace
 
@@ -27,8 +25,7 @@ absl::StatusOr<v1::Deficit> measure_deficit_of(Backend& backend, const v1::Measu
   violations.absorb("", target.status());
   const auto landmarks = to_landmarks(request.landmarks_mm(), "landmarks_mm");
   violations.absorb("", landmarks.status());
-  const double rim_mm = request.has_rim_mm() ? request.rim_mm() : kDefaultRimMm;
-  violations.check_range("rim_mm", rim_mm, 0.0, kMostRimMm, "mm");
+  const double rim_width = read_rim_width(request, violations);
   if (scan.ok() && target.ok() && scan->patient != target->patient) {
     violations.add("target_scan", "is of another patient than scan");
   }
@@ -42,8 +39,7 @@ absl::StatusOr<v1::Deficit> measure_deficit_of(Backend& backend, const v1::Measu
   }
   const auto goal = read_scan_surface(backend, target->patient, target->id);
   if (!goal.ok()) return goal.status();
-  const auto deficit =
-      planning::measure_deficit({*surface, *goal, *landmarks, rim_mm * kMetresPerMillimetre}, unwanted);
+  const auto deficit = planning::measure_deficit({*surface, *goal, *landmarks, rim_width}, unwanted);
   if (!deficit.ok()) return deficit.status();
   return to_deficit(*deficit, !request.figures_only());
 }

@@ -7,10 +7,9 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
 #include "core/planning/proposal.h"
-#include "server/backend/guarded.h"
+#include "server/backend/long_work.h"
 #include "server/backend/scan_reading.h"
 #include "server/backend/size_limits.h"
-#include "server/sessions/shortage.h"
 #include "server/wire/names.h"
 #include "server/wire/operation_response.h"
 #include "server/wire/proposal_conversion.h"
@@ -48,16 +47,14 @@ absl::StatusOr<ProposalOrder> read_request(Backend& backend, const std::string& 
   if (!violations.empty()) return violations.to_status();
   if (absl::Status small = check_size(request.spec().plan(), backend.options.sizes); !small.ok()) return small;
   if (const auto record = backend.store.get_model(model->patient, model->id); !record.ok()) return record.status();
-  const auto scan = backend.store.get_scan(target->patient, target->id);
-  if (!scan.ok()) return scan.status();
-  if (!scan->complete) {
-    return field_violation("spec.target_scan", "is not complete: upload the rest of it",
-                           absl::StatusCode::kFailedPrecondition);
+  if (absl::Status complete = check_complete(backend, target->patient, target->id, "spec.target_scan");
+      !complete.ok()) {
+    return complete;
   }
   return ProposalOrder{request.spec(), *std::move(converted), *target};
 }
 
-absl::StatusOr<v1::Proposal> propose(Backend& backend, const std::string& operation, const ProposalOrder& order) {
+absl::StatusOr<std::string> propose(Backend& backend, const std::string& operation, const ProposalOrder& order) {
   const auto started = std::chrono::steady_clock::now();
   if (!backend.operations.report(operation, 0.0, "loading model and target")) {
     return absl::CancelledError("the operation was cancelled");
@@ -76,34 +73,7 @@ absl::StatusOr<v1::Proposal> propose(Backend& backend, const std::string& operat
   message.set_wall_s(took.count());
   spdlog::info("operations/{} proposes {} mL in {} zones after {} solves", operation, message.total_ml(),
                message.volumes_size(), message.solves());
-  return message;
-}
-
-void run_proposal(Backend& backend, const std::string& operation, const ProposalOrder& order) {
-  absl::StatusOr<std::string> result = absl::UnknownError("");
-  const absl::Status status = guarded([&] {
-    const auto proposal = propose(backend, operation, order);
-    if (!proposal.ok()) return proposal.status();
-    result = pack_response(*proposal);
-    return absl::OkStatus();
-  });
-  if (!status.ok()) {
-    result = status;
-    spdlog::info("operations/{} failed: {}", operation, status.ToString());
-  }
-  backend.operations.finish(operation, std::move(result));
-}
-
-OperationView checked_only(const v1::ProposePlanRequest& request) {
-  v1::Proposal proposal;
-  *proposal.mutable_plan() = request.spec().plan();
-  OperationView view;
-  view.target = request.parent();
-  view.response_message = pack_response(proposal);
-  view.done = true;
-  view.progress = 1.0;
-  view.stage = "checked, not proposed";
-  return view;
+  return pack_response(message);
 }
 
 }  // namespace
@@ -116,21 +86,17 @@ absl::StatusOr<OperationView> start_proposal(Backend& backend, const Principal& 
   if (const auto known = backend.store.get_patient(*patient); !known.ok()) return known.status();
   auto order = read_request(backend, *patient, request);
   if (!order.ok()) return order.status();
-  if (request.validate_only()) return checked_only(request);
-  const auto started = backend.operations.start(request.parent(),
-                                                make_request_key(caller, "ProposePlan", request.request_id(), request));
-  if (!started.ok()) return started.status();
-  if (!started->is_new) return started->operation;
-  const std::string id = started->operation.id;
-  const bool taken =
-      backend.builds.run([&backend, id, order = *std::move(order)] { run_proposal(backend, id, order); }, id);
-  if (!taken) {
-    backend.operations.drop(id);
-    return shortage("TOO_MANY_BUILDS", 5.0,
-                    absl::StrCat("too many operations are waiting, the bound is ", backend.builds.max_queued()));
+  if (request.validate_only()) {
+    v1::Proposal unchanged;
+    *unchanged.mutable_plan() = request.spec().plan();
+    return checked_only(request.parent(), unchanged, "checked, not proposed");
   }
-  spdlog::info("operations/{} proposes a plan for {}", id, request.parent());
-  return started->operation;
+  return start_long_work(backend, request.parent(),
+                         make_request_key(caller, "ProposePlan", request.request_id(), request),
+                         "operations are waiting", "proposes a plan for",
+                         [&backend, order = *std::move(order)](const std::string& operation) {
+                           return propose(backend, operation, order);
+                         });
 }
 
 }  // namespace lipofill::server

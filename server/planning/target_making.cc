@@ -9,10 +9,9 @@
 #include "core/geometry/ply_writer.h"
 #include "core/geometry/surface_reader.h"
 #include "core/planning/target.h"
-#include "server/backend/guarded.h"
+#include "server/backend/long_work.h"
 #include "server/backend/scan_reading.h"
 #include "server/sessions/identifiers.h"
-#include "server/sessions/shortage.h"
 #include "server/store/record_names.h"
 #include "server/wire/names.h"
 #include "server/wire/operation_response.h"
@@ -47,10 +46,8 @@ absl::StatusOr<std::string> find_scan(Backend& backend, const std::string& patie
   const auto ids = parse_scan_name(name, field);
   if (!ids.ok()) return ids.status();
   if (ids->patient != patient) return field_violation(field, "is of another patient than parent");
-  const auto record = backend.store.get_scan(patient, ids->id);
-  if (!record.ok()) return record.status();
-  if (record->complete) return ids->id;
-  return field_violation(field, "is not complete: upload the rest of it", absl::StatusCode::kFailedPrecondition);
+  if (absl::Status complete = check_complete(backend, patient, ids->id, field); !complete.ok()) return complete;
+  return ids->id;
 }
 
 /// Checks a request without making anything.
@@ -140,19 +137,6 @@ absl::StatusOr<std::string> make_and_keep(Backend& backend, const std::string& o
   return pack_response(to_target(*kept));
 }
 
-void run_making(Backend& backend, const std::string& operation, const TargetOrder& order) {
-  absl::StatusOr<std::string> result = absl::UnknownError("");
-  const absl::Status status = guarded([&] {
-    result = make_and_keep(backend, operation, order);
-    return result.status();
-  });
-  if (!status.ok()) {
-    result = status;
-    spdlog::info("operations/{} failed: {}", operation, status.ToString());
-  }
-  backend.operations.finish(operation, std::move(result));
-}
-
 /// The operation of an equal request before a restart, of which the target is left.
 absl::StatusOr<std::optional<OperationView>> find_earlier(Backend& backend, const TargetOrder& order) {
   const auto name = backend.store.find_request(order.key);
@@ -166,17 +150,6 @@ absl::StatusOr<std::optional<OperationView>> find_earlier(Backend& backend, cons
   return backend.operations.add_done(patient_name(order.patient), order.key, pack_response(to_target(*record)));
 }
 
-/// The answer to a request that is only to be checked, when nothing is wrong with it.
-OperationView checked_only(const TargetOrder& order) {
-  OperationView view;
-  view.target = patient_name(order.patient);
-  view.response_message = pack_response(v1::Target());
-  view.done = true;
-  view.progress = 1.0;
-  view.stage = "checked, not made";
-  return view;
-}
-
 }  // namespace
 
 absl::StatusOr<OperationView> start_target(Backend& backend, const Principal& caller,
@@ -187,24 +160,16 @@ absl::StatusOr<OperationView> start_target(Backend& backend, const Principal& ca
   if (const auto known = backend.store.get_patient(*patient); !known.ok()) return known.status();
   auto order = read_request(backend, *patient, request);
   if (!order.ok()) return order.status();
-  if (request.validate_only()) return checked_only(*order);
+  if (request.validate_only()) return checked_only(request.parent(), v1::Target(), "checked, not made");
   order->key = make_request_key(caller, kMethod, request.request_id(), request);
   const auto earlier = find_earlier(backend, *order);
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) return **earlier;
-  const auto started = backend.operations.start(request.parent(), order->key);
-  if (!started.ok()) return started.status();
-  if (!started->is_new) return started->operation;
-  const std::string id = started->operation.id;
-  const bool taken =
-      backend.builds.run([&backend, id, made = *std::move(order)] { run_making(backend, id, made); }, id);
-  if (!taken) {
-    backend.operations.drop(id);
-    return shortage("TOO_MANY_BUILDS", 5.0,
-                    absl::StrCat("too many operations are waiting, the bound is ", backend.builds.max_queued()));
-  }
-  spdlog::info("operations/{} makes a target for {}", id, request.parent());
-  return started->operation;
+  const RequestKey key = order->key;
+  return start_long_work(backend, request.parent(), key, "operations are waiting", "makes a target for",
+                         [&backend, order = *std::move(order)](const std::string& operation) {
+                           return make_and_keep(backend, operation, order);
+                         });
 }
 
 }  // namespace lipofill::server

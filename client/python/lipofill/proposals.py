@@ -5,15 +5,11 @@ from __future__ import annotations
 from typing import Optional
 
 from lipofill.channel import Channel
-from lipofill.errors import LipofillError, NotFoundError, UnavailableError
 from lipofill.operations import Operations
 from lipofill.progress import ProgressCallback
 from lipofill.retries import with_request_id
-from lipofill.v1 import operation_service_pb2 as pb_operation
 from lipofill.v1 import planning_service_pb2 as pb
 from lipofill.v1 import simulation_pb2
-
-_MOST_RESTARTS = 10
 
 
 class Proposals:
@@ -38,35 +34,12 @@ class Proposals:
             Nothing is missing, the zones do not reach what is, or no volumes are within the bounds.
         """
         request = with_request_id(pb.ProposePlanRequest(parent=patient, spec=spec))
-        for _ in range(_MOST_RESTARTS):
-            done = self._propose(request, progress)
-            if done is not None:
-                break
-        else:
-            raise UnavailableError("the daemon ended again and again while it proposed the plan")
-        proposal = pb.Proposal()
-        if not done.response.Unpack(proposal):
-            raise LipofillError(f"operation {done.name} ended without a proposal")
-        return proposal
-
-    def _propose(
-        self, request: pb.ProposePlanRequest, progress: Optional[ProgressCallback]
-    ) -> Optional[pb_operation.Operation]:
-        """None where the operation went with a daemon that ended: the same request begins it
-        anew.
-        """
-        operation = self._channel.call(self._stub.ProposePlan, request)
-        try:
-            return self._operations.wait(operation, progress=progress)
-        except NotFoundError as error:
-            if error.from_daemon and operation.name in error.message:
-                return None
-            raise
-        except LipofillError:
-            raise
-        except BaseException:
-            self._operations.cancel(operation.name)
-            raise
+        return self._operations.carry_out(
+            lambda: self._channel.call(self._stub.ProposePlan, request),
+            pb.Proposal(),
+            doing="made the proposal",
+            progress=progress,
+        )
 
     def deliver(
         self,

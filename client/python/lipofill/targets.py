@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Mapping, Optional, Sequence, Union
 
 from lipofill.channel import Channel
-from lipofill.errors import InvalidArgumentError, LipofillError
+from lipofill.errors import InvalidArgumentError
 from lipofill.operations import Operations
 from lipofill.progress import ProgressCallback
 from lipofill.retries import with_request_id
@@ -100,18 +100,12 @@ class Targets:
         """
         patient = "/".join(spec.scan.split("/")[:2])
         request = with_request_id(pb.MakeTargetRequest(parent=patient, spec=spec))
-        operation = self._channel.call(self._stub.MakeTarget, request)
-        try:
-            done = self._operations.wait(operation, progress=progress)
-        except LipofillError:
-            raise
-        except BaseException:
-            self._operations.cancel(operation.name)
-            raise
-        target = pb.Target()
-        if not done.response.Unpack(target):
-            raise LipofillError(f"operation {done.name} ended without a target")
-        return target
+        return self._operations.carry_out(
+            lambda: self._channel.call(self._stub.MakeTarget, request),
+            pb.Target(),
+            doing="made the target",
+            progress=progress,
+        )
 
     def deficit(
         self,

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "core/base/field_violations.h"
+#include "server/wire/rim_width.h"
 
 namespace lipofill::server {
 namespace {
@@ -98,9 +99,12 @@ TEST(EvaluationDetail, LeavesOutWhatIsNearTheTargetsRim) {
 
 TEST(EvaluationDetail, RimIsWithinItsBounds) {
   v1::EvaluateSimulationRequest request;
-  EXPECT_DOUBLE_EQ(*read_rim_width(request), 0.005);
+  FieldViolations violations;
+  EXPECT_DOUBLE_EQ(read_rim_width(request, violations), 0.005);
+  EXPECT_TRUE(violations.empty());
   request.set_rim_mm(51.0);
-  EXPECT_EQ(field_violations_of(read_rim_width(request).status()).at(0).field, "rim_mm");
+  read_rim_width(request, violations);
+  EXPECT_EQ(field_violations_of(violations.to_status()).at(0).field, "rim_mm");
 }
 
 }  // namespace

@@ -1,16 +1,14 @@
 #include "core/planning/delivery.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 #include <utility>
 
 #include "absl/strings/str_format.h"
 #include "core/base/units.h"
 #include "core/film/film_metric.h"
 #include "core/plan/plan_placement.h"
+#include "core/planning/cannula_fan.h"
 #include "core/simulation/simulation.h"
 #include "core/simulation/skin_difference.h"
 #include "core/simulation/trial_shape.h"
@@ -28,16 +26,6 @@ constexpr double kBeyond = 8e-3;
 constexpr int kMostPlaces = 8;
 /// Injections that a plan may have.
 constexpr int kMostInjections = 1000;
-
-/// A cell of a zone, seen from above: along the length of the zone, and across it.
-struct ZoneCell {
-  geometry::ChartPoint place;
-  Vector3d position = Vector3d::Zero();
-  double area = 0.0;
-  Vector2d seen = Vector2d::Zero();
-  double radius = 0.0;  ///< from the entry
-  double angle = 0.0;   ///< of the fan
-};
 
 /// A zone with its volume, and the rate of its first injection.
 struct ZoneTask {
@@ -81,30 +69,6 @@ std::vector<ZoneTask> list_tasks(const model::FaceModel& model, const plan::Simu
   return tasks;
 }
 
-/// Looks at a zone from above: its cells along its length and across it, the lower end first.
-void look_from_above(const Vector3d& up, ZoneTask& task) {
-  Vector3d centre = Vector3d::Zero();
-  double area = 0.0;
-  for (const ZoneCell& cell : task.cells) {
-    centre += cell.area * cell.position;
-    area += cell.area;
-  }
-  centre /= area;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const ZoneCell& cell : task.cells) {
-    const Vector3d away = cell.position - centre;
-    spread += cell.area * away * away.transpose();
-  }
-  const Eigen::Matrix3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
-  Vector3d along = axes.col(2), across = axes.col(1);
-  // Eigenvectors have no sign of their own.
-  if (along.dot(up) < 0.0 || (along.dot(up) == 0.0 && along.sum() < 0.0)) along = -along;
-  if (across.sum() < 0.0) across = -across;
-  for (ZoneCell& cell : task.cells) {
-    cell.seen = {along.dot(cell.position - centre), across.dot(cell.position - centre)};
-  }
-}
-
 /// A place of the chart beyond the lower end: as the chart goes on from the middle of the zone.
 CannulaEntry place_entry(const model::FaceModel& model, ZoneTask& task) {
   const auto lowest = std::min_element(task.cells.begin(), task.cells.end(),
@@ -128,46 +92,6 @@ CannulaEntry place_entry(const model::FaceModel& model, ZoneTask& task) {
     cell.angle = std::atan2(away.y(), away.x());
   }
   return entry;
-}
-
-/// The cells of each tunnel, from the far end on; those without a cell are left out.
-std::vector<std::vector<ZoneCell>> lay_fan(const ZoneTask& task, double spacing) {
-  double low = task.cells.front().angle, high = low, farthest = 0.0;
-  for (const ZoneCell& cell : task.cells) {
-    low = std::min(low, cell.angle);
-    high = std::max(high, cell.angle);
-    farthest = std::max(farthest, cell.radius);
-  }
-  const int n = std::max(1, static_cast<int>(std::ceil((high - low) * farthest / spacing)));
-  std::vector<std::vector<ZoneCell>> tunnels(static_cast<size_t>(n));
-  for (const ZoneCell& cell : task.cells) {
-    const double share = high > low ? (cell.angle - low) / (high - low) : 0.0;
-    tunnels[static_cast<size_t>(std::min(n - 1, static_cast<int>(share * n)))].push_back(cell);
-  }
-  std::erase_if(tunnels, [](const std::vector<ZoneCell>& tunnel) { return tunnel.empty(); });
-  for (std::vector<ZoneCell>& tunnel : tunnels) {
-    std::stable_sort(tunnel.begin(), tunnel.end(),
-                     [](const ZoneCell& a, const ZoneCell& b) { return a.radius > b.radius; });
-  }
-  return tunnels;
-}
-
-/// Where fat is laid along a tunnel, and the area of the zone that each place serves.
-std::vector<std::pair<ZoneCell, double>> choose_places(const std::vector<ZoneCell>& tunnel, int most) {
-  const size_t n = std::min(tunnel.size(), static_cast<size_t>(most));
-  std::vector<std::pair<ZoneCell, double>> places;
-  for (size_t k = 0; k < n; ++k) {
-    const size_t first = k * tunnel.size() / n, last = (k + 1) * tunnel.size() / n;
-    double area = 0.0;
-    for (size_t cell = first; cell < last; ++cell) area += tunnel[cell].area;
-    places.emplace_back(tunnel[(first + last - 1) / 2], area);
-  }
-  return places;
-}
-
-double sum_areas(const std::vector<ZoneCell>& cells) {
-  return std::accumulate(cells.begin(), cells.end(), 0.0,
-                         [](double sum, const ZoneCell& cell) { return sum + cell.area; });
 }
 
 int count_passes(double volume, double most) {
@@ -245,9 +169,9 @@ absl::StatusOr<Delivery> make_delivery(const model::FaceModel& model, const plan
   std::vector<CannulaEntry> entries;
   int n_passes = 0;
   for (ZoneTask& task : tasks) {
-    look_from_above(up, task);
+    look_from_above(up, task.cells);
     entries.push_back(place_entry(model, task));
-    fans.push_back(lay_fan(task, settings.tunnel_spacing));
+    fans.push_back(lay_fan(task.cells, settings.tunnel_spacing));
     const double area = sum_areas(task.cells);
     for (const auto& tunnel : fans.back())
       n_passes += count_passes(task.volume * sum_areas(tunnel) / area, settings.max_pass);

@@ -1,6 +1,5 @@
 #include "core/planning/proposal.h"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -49,16 +48,6 @@ absl::Status under(const char* prefix, const absl::Status& status) {
   return violations.to_status();
 }
 
-/// Takes a zone out of a plan, and its film where it was the only one.
-plan::SimulationSpec without_zone(plan::SimulationSpec plan, const std::string& name) {
-  for (plan::FilmSpec& film : plan.films) {
-    std::erase_if(film.zones, [&](const plan::ZoneSpec& zone) { return zone.name == name; });
-  }
-  std::erase_if(plan.films, [](const plan::FilmSpec& film) { return film.zones.empty(); });
-  std::erase_if(plan.injections, [&](const plan::InjectionSpec& injection) { return injection.zone == name; });
-  return plan;
-}
-
 /// Finds a proposal, from the choices to the one that is made.
 class ProposalSearch {
  public:
@@ -89,6 +78,11 @@ class ProposalSearch {
     return progress_ == nullptr || progress_(fraction, stage);
   }
 
+  /// CANCELLED where the caller has had enough.
+  absl::Status tell(double fraction, const char* stage) {
+    return report(fraction, stage) ? absl::OkStatus() : absl::CancelledError("the proposal was cancelled");
+  }
+
   absl::StatusOr<std::vector<ZoneLayout>> list_layouts() const {
     if (!request_.zones) return std::vector<ZoneLayout>{{"the zones of the plan", request_.plan, 0}};
     auto layouts = list_zone_layouts(*face_.model, request_.plan, face_.deficit, *request_.zones);
@@ -107,19 +101,15 @@ class ProposalSearch {
     if (&face != &face_) one_each = plan::coarsen_plan(one_each, *face_.model, *face.model);
     auto zones = find_sought_zones(*face.model, one_each, face.deficit, request_.bounds);
     if (!zones.ok()) return under("plan", zones.status());
-    auto fit = VolumeFit::create(face.model, one_each, *std::move(zones), face.points, *face.target);
+    auto fit = VolumeFit::create(face.model, one_each, *std::move(zones), face.points, *face.target, face.distance);
     if (!fit.ok()) return under("plan", fit.status());
     auto fitted = (*fit)->find(request_.bounds, unwanted_);
     if (!fitted.ok()) return fitted.status();
     cost_.add(fitted->cost);
     layout.plan = one_each;
     Candidate candidate{std::move(layout), *std::move(fit), *std::move(fitted), 0.0};
-    double lacking = 0.0, all = 0.0;
-    for (Eigen::Index k = 0; k < face.points.n(); ++k) {
-      if (face.is_lacking[static_cast<size_t>(k)]) lacking += face.points.area[k];
-      all += face.points.area[k] * candidate.fitted.distance[k] * candidate.fitted.distance[k];
-    }
-    candidate.misfit = std::sqrt(all / lacking);
+    const double all = face.points.area.dot(candidate.fitted.distance.cwiseAbs2());
+    candidate.misfit = std::sqrt(all / face.lacking_area());
     return candidate;
   }
 
@@ -143,10 +133,8 @@ class ProposalSearch {
     std::optional<Candidate> best;
     size_t first = 0;
     for (size_t k = 0; k < layouts.size(); ++k) {
-      if (!report(kSearchDone * static_cast<double>(k) / static_cast<double>(layouts.size()),
-                  "trying zones on a coarse model")) {
-        return absl::CancelledError("the proposal was cancelled");
-      }
+      const double done = kSearchDone * static_cast<double>(k) / static_cast<double>(layouts.size());
+      if (absl::Status wanted = tell(done, "trying zones on a coarse model"); !wanted.ok()) return wanted;
       if (best && cost_.solves() >= request_.max_solves) {
         remarks_.push_back(absl::StrFormat("%d of %d choices of zones were tried: max_solves, %d, was reached",
                                            static_cast<int>(k), static_cast<int>(layouts.size()), request_.max_solves));
@@ -174,7 +162,7 @@ class ProposalSearch {
     absl::Status refusal = absl::InternalError("there is no choice of zones");
     bool is_first = true;
     for (const size_t k : *order) {
-      if (!report(kSearchDone, "fitting volumes")) return absl::CancelledError("the proposal was cancelled");
+      if (absl::Status wanted = tell(kSearchDone, "fitting volumes"); !wanted.ok()) return wanted;
       auto candidate = try_layout(face_, layouts[k]);
       if (candidate.ok() || absl::IsCancelled(candidate.status())) return candidate;
       if (std::exchange(is_first, false)) refusal = candidate.status();
@@ -195,21 +183,6 @@ class ProposalSearch {
     return absl::OkStatus();
   }
 
-  /// The misfit without a zone where all is linear, the other volumes at their best: the sum of
-  /// squares grows by V^2 / (N^-1)_zz, N: the normal matrix.
-  double foresee_without(const Candidate& best, Eigen::Index zone) const {
-    const Eigen::MatrixXd& reach = best.fitted.reach;
-    const Eigen::MatrixXd normal = reach.transpose() * face_.points.area.asDiagonal() * reach;
-    const double inverse = normal.completeOrthogonalDecomposition().pseudoInverse()(zone, zone);
-    const double volume = best.fitted.volumes[zone];
-    double lacking = 0.0;
-    for (Eigen::Index k = 0; k < face_.points.n(); ++k) {
-      if (face_.is_lacking[static_cast<size_t>(k)]) lacking += face_.points.area[k];
-    }
-    const double more = inverse > 0.0 ? volume * volume / inverse : 0.0;
-    return std::sqrt(best.misfit * best.misfit + more / lacking);
-  }
-
   /// Leaves out zones that bring too little, from the one with the least volume on.
   absl::Status leave_out(Candidate& best) {
     std::set<std::string> kept;
@@ -222,12 +195,11 @@ class ProposalSearch {
         if (least < 0 || volume(static_cast<int>(z)) < volume(least)) least = static_cast<int>(z);
       }
       if (least < 0) break;
-      if (!report(kSearchDone, "leaving out zones that bring little")) {
-        return absl::CancelledError("the proposal was cancelled");
-      }
+      if (absl::Status wanted = tell(kSearchDone, "leaving out zones that bring little"); !wanted.ok()) return wanted;
       const std::string name = zones[static_cast<size_t>(least)].name;
       kept.insert(name);
-      if (foresee_without(best, least) > best.misfit + kSurelyWorth * request_.worthwhile) continue;
+      if (foresee_without(face_, best.fitted, best.misfit, least) > best.misfit + kSurelyWorth * request_.worthwhile)
+        continue;
       auto without =
           try_layout(face_, {best.layout.description, without_zone(best.layout.plan, name), best.layout.n_proposed});
       if (absl::IsCancelled(without.status())) return without.status();
@@ -242,7 +214,7 @@ class ProposalSearch {
   /// Tightens the volumes for tissue that is not as the model has it.
   absl::Status make_hold(Candidate& best) {
     if (!request_.spread) return absl::OkStatus();
-    if (!report(kSearchDone, "trying other tissue")) return absl::CancelledError("the proposal was cancelled");
+    if (absl::Status wanted = tell(kSearchDone, "trying other tissue"); !wanted.ok()) return wanted;
     auto found = make_robust(*best.fit, static_cast<int>(face_.model->layers.size()), *request_.spread, bounds_,
                              best.fitted, unwanted_, cost_);
     if (!found.ok()) return found.status();
@@ -277,7 +249,7 @@ class ProposalSearch {
     proposal.before = *before;
     proposal.reached = *reached;
     for (const std::string& remark : best.fit->shape().shape().remarks()) remarks_.push_back(remark);
-    if (!report(kCurveDone, "tracing the curve")) return absl::CancelledError("the proposal was cancelled");
+    if (absl::Status wanted = tell(kCurveDone, "tracing the curve"); !wanted.ok()) return wanted;
     auto curve = trace_trade_off(face_, *best.fit, best.fitted, bounds_, request_.curve_points, unwanted_, cost_);
     if (!curve.ok()) return curve.status();
     proposal.curve = *std::move(curve);

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_format.h"
 #include "core/base/units.h"
+#include "core/planning/comparison.h"
 
 namespace lipofill::planning {
 namespace {
@@ -21,18 +22,6 @@ constexpr double kFar = 30e-3;
 constexpr double kLeastOpposite = 0.3;
 /// Hollows narrower than this are noise of a scan [m].
 constexpr double kSmoothing = 4e-3;
-
-/// The triangles all of whose corners are wanted.
-geometry::SurfaceMesh cut(const geometry::SurfaceMesh& patch, const std::vector<bool>& wanted) {
-  std::vector<int> triangles;
-  for (int t = 0; t < patch.n_triangles(); ++t) {
-    const auto& corners = patch.triangles[static_cast<size_t>(t)];
-    if (std::all_of(corners.begin(), corners.end(), [&](int v) { return wanted[static_cast<size_t>(v)]; })) {
-      triangles.push_back(t);
-    }
-  }
-  return geometry::extract_triangles(patch, triangles).mesh;
-}
 
 double in_mm(double length) {
   return length * kMillimetresPerMetre;
@@ -69,6 +58,14 @@ std::vector<double> ProposalCase::of_lacking(const Eigen::VectorXd& distances) c
   return chosen;
 }
 
+double ProposalCase::lacking_area() const {
+  double area = 0.0;
+  for (Index k = 0; k < points.n(); ++k) {
+    if (is_lacking[static_cast<size_t>(k)]) area += points.area[k];
+  }
+  return area;
+}
+
 double ProposalCase::rms(const Eigen::VectorXd& distances) const {
   return geometry::compute_distance_statistics(of_lacking(distances)).rms;
 }
@@ -80,7 +77,9 @@ double ProposalCase::p95(const Eigen::VectorXd& distances) const {
 absl::StatusOr<Closeness> ProposalCase::compare(const Eigen::Matrix3Xd& displacement, const Unwanted& unwanted) const {
   geometry::SurfaceMesh moved = points.rest;
   moved.points += points.gather(displacement);
-  moved = cut(moved, is_lacking);
+  std::vector<bool> left_out = is_lacking;
+  left_out.flip();
+  moved = geometry::extract_triangles(moved, find_triangles_without(moved, left_out)).mesh;
   Closeness closeness;
   closeness.skin_vertices = moved.n_vertices();
   if (moved.triangles.empty()) return closeness;

@@ -30,6 +30,8 @@ struct ProposalCase {
   Eigen::VectorXd distance;       ///< of the points at rest, NaN without a target opposite [m]
   double missing = 0.0;           ///< of the points that lack something: area times distance [m3]
 
+  /// Of the points that lack something [m2].
+  double lacking_area() const;
   /// Root of the mean square over the points that lack something, and what 95 of 100 do not exceed.
   double rms(const Eigen::VectorXd& distances) const;
   double p95(const Eigen::VectorXd& distances) const;

@@ -37,8 +37,6 @@ constexpr double kAtBound = 3e-9;
 constexpr double kAtShare = 5e-3;
 /// Of the volume that the tissue takes, where it does not take all: from there the fit goes on.
 constexpr double kBackFromPathEnd = 0.9;
-/// Points farther from the target at rest have none opposite [m].
-constexpr double kFar = 30e-3;
 
 constexpr double kPerMl = kCubicMetresPerMillilitre;
 
@@ -69,27 +67,20 @@ struct VolumeFit::State {
 absl::StatusOr<std::unique_ptr<VolumeFit>> VolumeFit::create(std::shared_ptr<const model::FaceModel> model,
                                                              plan::SimulationSpec one_each,
                                                              std::vector<SoughtZone> zones, const SkinPoints& points,
-                                                             const TargetDistance& target) {
+                                                             const TargetDistance& target,
+                                                             const VectorXd& rest_distance) {
   auto trial = simulation::TrialShape::create(std::move(model), std::move(one_each));
   if (!trial.ok()) return trial.status();
-  return std::unique_ptr<VolumeFit>(new VolumeFit(*std::move(trial), std::move(zones), points, target));
+  return std::unique_ptr<VolumeFit>(new VolumeFit(*std::move(trial), std::move(zones), points, target, rest_distance));
 }
 
 VolumeFit::VolumeFit(std::unique_ptr<simulation::TrialShape> trial, std::vector<SoughtZone> zones,
-                     const SkinPoints& points, const TargetDistance& target)
+                     const SkinPoints& points, const TargetDistance& target, const VectorXd& rest_distance)
     : trial_(std::move(trial)),
       zones_(std::move(zones)),
       points_(points),
       target_(target),
-      rest_distance_(points.n()),
-      skin_slope_(zones_.size()),
-      pressure_slope_(static_cast<Index>(zones_.size()), static_cast<Index>(zones_.size())) {
-  for (Index k = 0; k < points.n(); ++k) {
-    const TargetSide side = target.at(points.rest.points.col(k));
-    const bool counts = !side.is_off && std::abs(side.distance) < kFar;
-    rest_distance_[k] = counts ? side.distance : std::numeric_limits<double>::quiet_NaN();
-  }
-}
+      rest_distance_(rest_distance) {}
 
 /// The shape with these volumes; where not all goes in, that with what does.
 absl::StatusOr<VolumeFit::State> VolumeFit::evaluate(const VectorXd& volumes, bool from_last) {
@@ -148,47 +139,9 @@ absl::StatusOr<VolumeFit::State> VolumeFit::begin(const ProposalBounds& bounds) 
 }
 
 absl::Status VolumeFit::differentiate() {
-  const auto found = trial_->find_injection_sensitivities();
-  const auto pools = trial_->pools();
-  for (size_t z = 0; z < zones_.size(); ++z) {
-    if (z >= found.size() || !found[z]) {
-      return absl::InternalError("what more fat in zone '" + zones_[z].name + "' does to the skin was not found");
-    }
-    skin_slope_[z] = found[z]->skin;
-    for (size_t row = 0; row < zones_.size(); ++row) {
-      // The pools that the zone is part of; of one in two pieces the pressure that rises most.
-      double rise = -kUnbounded;
-      for (size_t pool = 0; pool < pools.size(); ++pool) {
-        if (!simulation::has_zone(pools[pool], zones_[row].name)) continue;
-        rise = std::max(rise, found[z]->pool_pressure[pool]);
-      }
-      pressure_slope_(static_cast<Index>(row), static_cast<Index>(z)) = std::isfinite(rise) ? rise : 0.0;
-    }
-    ++cost_.derivatives;
-  }
-  return absl::OkStatus();
-}
-
-/// Broyden: the least change of the slopes that makes them true of the step.
-void VolumeFit::learn(const State& before, const State& after) {
-  const VectorXd step = after.volumes - before.volumes;
-  const double square = step.squaredNorm();
-  if (!(square > 0.0)) return;
-  Eigen::Matrix3Xd missed = after.skin - before.skin;
-  for (size_t z = 0; z < zones_.size(); ++z) missed -= step[static_cast<Index>(z)] * skin_slope_[z];
-  for (size_t z = 0; z < zones_.size(); ++z) skin_slope_[z] += step[static_cast<Index>(z)] / square * missed;
-  const VectorXd missed_pressure = after.pressure - before.pressure - pressure_slope_ * step;
-  pressure_slope_ += missed_pressure * step.transpose() / square;
-}
-
-/// Of the distances by the volumes [1/m2] (n, zones).
-Eigen::MatrixXd VolumeFit::slopes(const State& state) const {
-  Eigen::MatrixXd slope(points_.n(), static_cast<Index>(zones_.size()));
-  for (size_t z = 0; z < zones_.size(); ++z) {
-    const Eigen::Matrix3Xd moved = points_.gather(skin_slope_[z]);
-    slope.col(static_cast<Index>(z)) = moved.cwiseProduct(state.direction).colwise().sum().transpose();
-  }
-  return slope;
+  const absl::Status found = slopes_.differentiate(*trial_, zones_);
+  if (found.ok()) cost_.derivatives += static_cast<int>(zones_.size());
+  return found;
 }
 
 /// The volumes that are best where everything is linear in them.
@@ -197,7 +150,7 @@ absl::StatusOr<VectorXd> VolumeFit::propose(const State& state, const ProposalBo
   const VectorXd weight = points_.area.cwiseSqrt();
   BoundedProblem problem;
   problem.start = state.volumes / kPerMl;
-  problem.matrix = kPerMl * (weight.asDiagonal() * slopes(state));
+  problem.matrix = kPerMl * (weight.asDiagonal() * slopes_.of_distance(points_, state.direction));
   problem.right_side = problem.matrix * problem.start - weight.cwiseProduct(state.distance);
   problem.low.resize(n);
   problem.high.resize(n);
@@ -211,7 +164,7 @@ absl::StatusOr<VectorXd> VolumeFit::propose(const State& state, const ProposalBo
     problem.low[z] = zones_[static_cast<size_t>(z)].bounds.low / kPerMl;
     problem.high[z] = zones_[static_cast<size_t>(z)].bounds.high / kPerMl;
     if (std::isfinite(bounds.max_pressure)) {
-      limit(pressure_slope_.row(z).transpose(), state.pressure[z], bounds.max_pressure);
+      limit(slopes_.pressure().row(z).transpose(), state.pressure[z], bounds.max_pressure);
     }
   }
   if (std::isfinite(bounds.max_total)) {
@@ -222,12 +175,12 @@ absl::StatusOr<VectorXd> VolumeFit::propose(const State& state, const ProposalBo
     // Where each zone lifts most, and where the skin is highest now.
     std::vector<Index> crowns(zones_.size() + 1);
     state.skin.colwise().norm().maxCoeff(&crowns.back());
-    for (size_t z = 0; z < zones_.size(); ++z) skin_slope_[z].colwise().norm().maxCoeff(&crowns[z]);
+    for (size_t z = 0; z < zones_.size(); ++z) slopes_.skin()[z].colwise().norm().maxCoeff(&crowns[z]);
     for (const Index node : crowns) {
       const double lift = state.skin.col(node).norm();
       VectorXd slope(n);
       for (Index z = 0; z < n; ++z) {
-        slope[z] = lift > 0.0 ? state.skin.col(node).dot(skin_slope_[static_cast<size_t>(z)].col(node)) / lift : 0.0;
+        slope[z] = lift > 0.0 ? state.skin.col(node).dot(slopes_.skin()[static_cast<size_t>(z)].col(node)) / lift : 0.0;
       }
       limit(slope, lift, bounds.max_lift);
     }
@@ -285,7 +238,7 @@ absl::StatusOr<FittedVolumes> VolumeFit::find(const ProposalBounds& bounds, cons
       wanted = state.volumes;
       break;
     }
-    learn(state, *next);
+    slopes_.learn(next->volumes - state.volumes, next->skin - state.skin, next->pressure - state.pressure);
     state = *std::move(next);
   }
   auto settled = evaluate(round_volumes(wanted), false);
@@ -325,7 +278,7 @@ std::vector<Bound> VolumeFit::find_bounds(const State& state, const ProposalBoun
   for (size_t z = 0; z < zones_.size(); ++z) {
     const VolumeRange& range = zones_[z].bounds;
     const double volume = state.volumes[static_cast<Index>(z)];
-    const bool lifts_top = skin_slope_[z].col(top).norm() > 0.3 * skin_slope_[z].colwise().norm().maxCoeff();
+    const bool lifts_top = slopes_.skin()[z].col(top).norm() > 0.3 * slopes_.skin()[z].colwise().norm().maxCoeff();
     if (volume > range.high - kAtBound) {
       found[z] = Bound::kMaxZone;
     } else if (volume < range.low + kAtBound) {
@@ -349,7 +302,7 @@ FittedVolumes VolumeFit::describe(const State& state, const ProposalBounds& boun
   fitted.pressure = state.pressure;
   fitted.bound = find_bounds(state, bounds);
   fitted.distance = state.distance;
-  fitted.reach = slopes(state);
+  fitted.reach = slopes_.of_distance(points_, state.direction);
   fitted.mean_square = state.mean_square;
   fitted.max_lift = state.max_lift;
   fitted.state_hash = trial_->shape().state_hash();

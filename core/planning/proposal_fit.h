@@ -10,6 +10,7 @@
 #include "core/planning/proposal_bounds.h"
 #include "core/planning/proposal_points.h"
 #include "core/planning/proposal_zones.h"
+#include "core/planning/volume_slopes.h"
 #include "core/simulation/trial_shape.h"
 
 namespace lipofill::planning {
@@ -44,12 +45,14 @@ struct FittedVolumes {
 /// Checked by tests/unit/planning/proposal_test.cc.
 class VolumeFit {
  public:
-  /// @param one_each  with_one_injection_each()
-  /// @param target    outlives the fit, as points do
+  /// @param one_each       with_one_injection_each()
+  /// @param target         outlives the fit, as points and rest_distance do
+  /// @param rest_distance  of the points, NaN where one has no target opposite [m]
   /// Errors as TrialShape::create.
   static absl::StatusOr<std::unique_ptr<VolumeFit>> create(std::shared_ptr<const model::FaceModel> model,
                                                            plan::SimulationSpec one_each, std::vector<SoughtZone> zones,
-                                                           const SkinPoints& points, const TargetDistance& target);
+                                                           const SkinPoints& points, const TargetDistance& target,
+                                                           const Eigen::VectorXd& rest_distance);
 
   /// FAILED_PRECONDITION, with figures, where no volumes are within the bounds or the tissue holds
   /// none; CANCELLED once it is unwanted.
@@ -64,19 +67,15 @@ class VolumeFit {
   /// The shape found last.
   const simulation::TrialShape& shape() const { return *trial_; }
   const std::vector<SoughtZone>& zones() const { return zones_; }
-  /// Distances of the points at rest; NaN where a point has no target opposite.
-  const Eigen::VectorXd& rest_distance() const { return rest_distance_; }
 
  private:
   struct State;
   VolumeFit(std::unique_ptr<simulation::TrialShape> trial, std::vector<SoughtZone> zones, const SkinPoints& points,
-            const TargetDistance& target);
+            const TargetDistance& target, const Eigen::VectorXd& rest_distance);
   absl::StatusOr<State> evaluate(const Eigen::VectorXd& volumes, bool from_last);
   absl::StatusOr<State> begin(const ProposalBounds& bounds);
   absl::StatusOr<State> try_step(const State& state, const Eigen::VectorXd& wanted, const ProposalBounds& bounds);
   absl::Status differentiate();
-  void learn(const State& before, const State& after);
-  Eigen::MatrixXd slopes(const State& state) const;
   absl::StatusOr<Eigen::VectorXd> propose(const State& state, const ProposalBounds& bounds) const;
   FittedVolumes describe(const State& state, const ProposalBounds& bounds) const;
   std::vector<Bound> find_bounds(const State& state, const ProposalBounds& bounds) const;
@@ -85,9 +84,8 @@ class VolumeFit {
   std::vector<SoughtZone> zones_;
   const SkinPoints& points_;
   const TargetDistance& target_;
-  Eigen::VectorXd rest_distance_;
-  std::vector<Eigen::Matrix3Xd> skin_slope_;  ///< of the nodes of the skin by each volume [1/m2]
-  Eigen::MatrixXd pressure_slope_;            ///< of each zone (rows) by each volume [Pa/m3]
+  const Eigen::VectorXd& rest_distance_;
+  VolumeSlopes slopes_;
   bool is_at_path_end_ = false;
   ProposalCost cost_;
 };

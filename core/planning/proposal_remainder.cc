@@ -1,5 +1,6 @@
 #include "core/planning/proposal_remainder.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -136,6 +137,14 @@ std::string describe_remainder(const Remainder& remainder) {
                              where, excess, rms);
   }
   return "";
+}
+
+double foresee_without(const ProposalCase& face, const FittedVolumes& fitted, double misfit, Eigen::Index zone) {
+  const Eigen::MatrixXd normal = fitted.reach.transpose() * face.points.area.asDiagonal() * fitted.reach;
+  const double inverse = normal.completeOrthogonalDecomposition().pseudoInverse()(zone, zone);
+  const double volume = fitted.volumes[zone];
+  const double more = inverse > 0.0 ? volume * volume / inverse : 0.0;
+  return std::sqrt(misfit * misfit + more / face.lacking_area());
 }
 
 }  // namespace lipofill::planning

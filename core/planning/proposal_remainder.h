@@ -33,4 +33,9 @@ double share_within_reach(const ProposalCase& face, const FittedVolumes& fitted)
 /// One sentence, with its figures.
 std::string describe_remainder(const Remainder& remainder);
 
+/// The misfit without a zone where all is linear, the other volumes at their best: the sum of
+/// squares grows by V^2 / (N^-1)_zz, N: the normal matrix.
+/// @param misfit  of all skin with it, as if it were an rms of that which lacks something [m]
+double foresee_without(const ProposalCase& face, const FittedVolumes& fitted, double misfit, Eigen::Index zone);
+
 }  // namespace lipofill::planning

@@ -131,4 +131,13 @@ Eigen::VectorXd round_volumes(const Eigen::VectorXd& volumes) {
   });
 }
 
+plan::SimulationSpec without_zone(plan::SimulationSpec plan, const std::string& name) {
+  for (plan::FilmSpec& film : plan.films) {
+    std::erase_if(film.zones, [&](const plan::ZoneSpec& zone) { return zone.name == name; });
+  }
+  std::erase_if(plan.films, [](const plan::FilmSpec& film) { return film.zones.empty(); });
+  std::erase_if(plan.injections, [&](const plan::InjectionSpec& injection) { return injection.zone == name; });
+  return plan;
+}
+
 }  // namespace lipofill::planning

@@ -40,4 +40,7 @@ plan::SimulationSpec with_volumes(const plan::SimulationSpec& one_each, const Ei
 /// The next lower whole thousandths of a millilitre [m3]: the same number in messages and files.
 Eigen::VectorXd round_volumes(const Eigen::VectorXd& volumes);
 
+/// Takes a zone out of a plan, and its film where it was the only one.
+plan::SimulationSpec without_zone(plan::SimulationSpec plan, const std::string& name);
+
 }  // namespace lipofill::planning

@@ -38,6 +38,10 @@ v1::Plan plan_file_of(const PlanFile& from, const v1::Model& model, const v1::Si
   return plan;
 }
 
+bool is_on_daemon(const std::string& surface) {
+  return surface.starts_with("patients/");
+}
+
 void append_volume(const v1::ProposedVolume& volume, std::string& text) {
   absl::StrAppendFormat(&text, "  %-24s below %-14s %8.3f mL +- %.3f  %7.0f Pa%s%s\n", volume.zone(),
                         volume.below_layer(), volume.volume_ml(), volume.standard_error_ml(), volume.pressure_pa(),
@@ -107,6 +111,10 @@ absl::Status ProposeRun::read_plan() {
   std::filesystem::create_directories(options_.out, error);
   if (error)
     return absl::InvalidArgumentError(absl::StrCat("cannot make the folder ", options_.out, ": ", error.message()));
+  // Said before a model is built for it.
+  if (!is_on_daemon(options_.target) && !std::filesystem::is_regular_file(options_.target, error)) {
+    return absl::InvalidArgumentError(absl::StrCat("--target: ", options_.target, " does not exist or is not a file"));
+  }
   return ground_.read_plan();
 }
 
@@ -120,7 +128,7 @@ absl::Status ProposeRun::prepare_ground() {
 
 absl::Status ProposeRun::send_target() {
   target_ = options_.target;
-  if (target_.starts_with("patients/")) return absl::OkStatus();
+  if (is_on_daemon(target_)) return absl::OkStatus();
   const auto scan = ground_.send_surface(options_.target, options_.target_unit, "target");
   if (scan.ok()) target_ = scan->name();
   return scan.status();

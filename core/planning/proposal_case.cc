@@ -20,6 +20,8 @@ constexpr double kReach = 40e-3;
 constexpr double kFar = 30e-3;
 /// Of the skin that must have a target opposite.
 constexpr double kLeastOpposite = 0.3;
+/// A target no farther than this is the skin itself [m].
+constexpr double kSame = 5e-6;
 /// Hollows narrower than this are noise of a scan [m].
 constexpr double kSmoothing = 4e-3;
 
@@ -38,6 +40,9 @@ absl::Status nothing_missing(const Eigen::VectorXd& distance, double min_deficit
     ++n;
   }
   const double mean = n > 0 ? sum / static_cast<double>(n) : 0.0;
+  if (least > -kSame && std::abs(mean) < kSame) {
+    return absl::FailedPreconditionError("nothing is missing: the target is the skin as it is");
+  }
   const std::string where =
       least >= 0.0 ? std::string("everywhere below the skin")
                    : absl::StrFormat("outside the skin by %.2f mm at most, in places narrower than the tissue shows",

@@ -46,6 +46,12 @@ TEST_F(ProposeTest, RefusesWithFigures) {
   const CommandResult below = run("lipofill propose plan.json --target below.obj --out proposed --spawn --quiet");
   EXPECT_NE(below.exit_code, 0);
   EXPECT_THAT(below.errors, HasSubstr("the target lies everywhere below the skin"));
+  write_plane("same.obj", 0.0);
+  const CommandResult same = run("lipofill propose plan.json --target same.obj --out proposed --spawn --quiet");
+  EXPECT_THAT(same.errors, HasSubstr("nothing is missing: the target is the skin as it is"));
+  const CommandResult none = run("lipofill propose plan.json --target none.obj --out proposed --spawn");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_EQ(none.errors, "lipofill: --target: none.obj does not exist or is not a file\n") << "before anything is made";
   const CommandResult bound = run(
       "lipofill propose plan.json --target goal.obj --out proposed --spawn --quiet --min-zone-ml 2 --max-zone-ml 1");
   EXPECT_EQ(bound.exit_code, 2);

@@ -72,6 +72,7 @@ void add_watch_command(CLI::App& root, Application& application);
 void add_export_command(CLI::App& root, Application& application);
 void add_evaluate_command(CLI::App& root, Application& application);
 void add_propose_command(CLI::App& root, Application& application);
+void add_deliver_command(CLI::App& root, Application& application);
 void add_shape_command(CLI::App& root, Application& application);
 void add_target_command(CLI::App& root, Application& application);
 void add_operation_commands(CLI::App& root, Application& application);

@@ -38,8 +38,11 @@ std::string parts_text(const v1::Evaluation& evaluation) {
                     volume_line("before", zone.before().volume()), volume_line("simulated", zone.simulated().volume()));
   }
   if (!evaluation.has_symmetry()) return text;
-  return absl::StrCat(text, absl::StrFormat("Symmetry index %.2f mm before, %.2f mm simulated\n",
-                                            evaluation.symmetry().before_mm(), evaluation.symmetry().simulated_mm()));
+  const v1::SymmetryIndex& symmetry = evaluation.symmetry();
+  absl::StrAppendFormat(&text, "Symmetry index %.2f mm before, %.2f mm simulated", symmetry.before_mm(),
+                        symmetry.simulated_mm());
+  if (symmetry.has_target_mm()) absl::StrAppendFormat(&text, ", %.2f mm of the target", symmetry.target_mm());
+  return text + "\n";
 }
 
 std::string operation_state(const v1::Operation& operation) {

@@ -37,6 +37,7 @@ void add_all_commands(CLI::App& root, Application& application) {
   add_export_command(root, application);
   add_evaluate_command(root, application);
   add_propose_command(root, application);
+  add_deliver_command(root, application);
   add_shape_command(root, application);
   add_target_command(root, application);
   add_render_command(root, application);

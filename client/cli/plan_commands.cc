@@ -36,12 +36,14 @@ ExitCode tell_of_files(const Application& application, const std::string& file, 
                                         {"layers", plan.model().layers_size()},
                                         {"films", simulation.films_size()},
                                         {"injections", simulation.injections_size()},
+                                        {"parts", plan.parts_size()},
                                         {"landmarks", plan.model().scan_region().landmarks_mm().size()}}
                      .dump(2)
               << "\n";
   } else {
-    std::cout << absl::StrCat(file, ": a plan with ", plan.model().layers_size(), " layers, ", simulation.films_size(),
-                              " films and ", simulation.injections_size(),
+    const std::string parts = plan.parts_size() > 0 ? absl::StrCat(" and ", plan.parts_size(), " parts, each") : "";
+    std::cout << absl::StrCat(file, ": a plan", parts, " with ", plan.model().layers_size(), " layers, ",
+                              simulation.films_size(), " films and ", simulation.injections_size(),
                               " injections; values are checked by the daemon, with --model or when it runs\n");
   }
   return ExitCode::kOk;

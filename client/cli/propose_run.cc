@@ -6,6 +6,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/changed_plan.h"
+#include "client/cli/propose_words.h"
 #include "client/cpp/json_file.h"
 #include "client/cpp/json_message.h"
 #include "client/cpp/model_build.h"
@@ -14,73 +16,11 @@
 namespace lipofill::client {
 namespace {
 
-/// The plan as a file beside the results: the model as it was built, the plan as it was proposed,
-/// files named from there.
-v1::Plan plan_file_of(const PlanFile& from, const v1::Model& model, const v1::SimulationSpec& proposed,
-                      const std::filesystem::path& folder) {
-  v1::Plan plan = from.plan;
-  const auto name_from_there = [&](const std::optional<std::filesystem::path>& file, v1::ScanFile* scan) {
-    if (!file) return;
-    std::error_code error;
-    const auto relative = std::filesystem::relative(*file, folder, error);
-    scan->set_file(error || relative.empty() ? std::filesystem::absolute(*file).string() : relative.string());
-    scan->clear_landmarks_file();  // the model has them
-  };
-  if (from.scan_file) name_from_there(from.scan_file, plan.mutable_scan());
-  if (from.bone_file) name_from_there(from.bone_file, plan.mutable_bone());
-  *plan.mutable_model() = model.spec();
-  if (plan.model().has_scan_region()) {
-    plan.mutable_model()->mutable_scan_region()->clear_scan();
-    plan.mutable_model()->mutable_scan_region()->clear_bone_scan();
-  }
-  *plan.mutable_simulation() = proposed;
-  plan.mutable_simulation()->clear_model();
-  return plan;
-}
-
 bool is_on_daemon(const std::string& surface) {
   return surface.starts_with("patients/");
 }
 
-void append_volume(const v1::ProposedVolume& volume, std::string& text) {
-  absl::StrAppendFormat(&text, "  %-24s below %-14s %8.3f mL +- %.3f  %7.0f Pa%s%s\n", volume.zone(),
-                        volume.below_layer(), volume.volume_ml(), volume.standard_error_ml(), volume.pressure_pa(),
-                        volume.bound().empty() ? "" : absl::StrCat("  held by ", volume.bound()),
-                        volume.proposed_zone() ? "  (proposed)" : "");
-}
-
 }  // namespace
-
-std::string describe(const v1::Proposal& proposal) {
-  std::string text = absl::StrFormat("%.3f mL in %d zones\n", proposal.total_ml(), proposal.volumes_size());
-  for (const v1::ProposedVolume& volume : proposal.volumes()) append_volume(volume, text);
-  const v1::DistanceStatistics& before = proposal.before().skin_to_target();
-  const v1::DistanceStatistics& reached = proposal.reached().skin_to_target();
-  absl::StrAppendFormat(&text, "skin that lacks something, to the target: rms %.2f -> %.2f mm, p95 %.2f -> %.2f mm\n",
-                        before.rms_mm(), reached.rms_mm(), before.p95_mm(), reached.p95_mm());
-  absl::StrAppendFormat(&text, "missing %.2f -> %.2f mL; the skin moves by up to %.2f mm\n",
-                        proposal.before().volume().deficit_ml(), proposal.reached().volume().deficit_ml(),
-                        proposal.max_lift_mm());
-  for (const v1::Remainder& remainder : proposal.remainders()) {
-    absl::StrAppend(&text, "left: ", remainder.description(), "\n");
-  }
-  if (proposal.has_robustness()) {
-    const v1::Robustness& held = proposal.robustness();
-    absl::StrAppendFormat(&text,
-                          "holds in %d of %d cases of tissue, up to %.0f Pa; without that %d cases, %.3f mL, rms %.2f "
-                          "mm\n",
-                          held.members_below(), held.members(), held.pressure_quantile_pa(),
-                          held.nominal_members_below(), held.nominal_total_ml(), held.nominal_rms_mm());
-  }
-  for (const v1::TradeOff& point : proposal.curve()) {
-    absl::StrAppendFormat(&text, "curve: %8.3f mL  %7.0f Pa  rms %.2f mm\n", point.total_ml(), point.max_pressure_pa(),
-                          point.rms_mm());
-  }
-  for (const std::string& remark : proposal.remarks()) absl::StrAppend(&text, "remark: ", remark, "\n");
-  absl::StrAppendFormat(&text, "%d solves, %d factorisations, %.1f s\n", proposal.solves(), proposal.factorisations(),
-                        proposal.wall_s());
-  return text;
-}
 
 ProposeRun::ProposeRun(Application& application, ProposeOptions options)
     : application_(application),
@@ -101,7 +41,7 @@ absl::StatusOr<ExitCode> ProposeRun::carry_out() {
     ground_.delete_patient();
     ground_.end_daemon();
   }
-  if (!status.ok()) return status;
+  if (!status.ok()) return name_options(status);
   print();
   return ExitCode::kOk;
 }

@@ -42,7 +42,4 @@ class ProposeRun {
   v1::Proposal proposal_;
 };
 
-/// A proposal for people.
-std::string describe(const v1::Proposal& proposal);
-
 }  // namespace lipofill::client

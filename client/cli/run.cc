@@ -19,16 +19,14 @@ namespace {
 
 using v1::SimulationService;
 
-/// The settled shape in as few steps as it takes: the goal's own step lengths and tolerance in
-/// place of the plan's.
+}  // namespace
+
 void aim_at_settled_shape(v1::TimeControl& time) {
   time.set_goal(v1::TimeControl::SETTLED_SHAPE);
   time.clear_max_step_ms();
   time.clear_max_injection_step_ms();
   time.clear_error_tolerance_mm();
 }
-
-}  // namespace
 
 Run::Run(Application& application, RunOptions options)
     : application_(application),

@@ -27,6 +27,10 @@ struct RunOptions : GroundOptions {
   bool quiet = false;
 };
 
+/// The settled shape in as few steps as it takes: the goal's own step lengths and tolerance in
+/// place of the plan's.
+void aim_at_settled_shape(v1::TimeControl& time);
+
 /// A plan carried out on a daemon from scan to result: each member function is one step, in their
 /// order in `carry_out`.
 class Run {

@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "client/cli/application.h"
+#include "client/cli/face_run.h"
 #include "client/cli/run.h"
 #include "client/cli/units.h"
 
@@ -12,6 +13,7 @@ constexpr char kDescription[] =
     "(with a scan) "
     "scan_NNNN.vtp at the interval and at the end, .pvd files that ParaView opens, series.csv, summary.json, "
     "picture.png, run.json. "
+    "A plan of several parts of the face leaves a folder a part and the whole face beside them. "
     "Progress goes to the error output, the summary to the standard output. Ctrl-C stops the simulation.";
 
 constexpr char kRunExamples[] =
@@ -20,14 +22,17 @@ constexpr char kRunExamples[] =
     "  lipofill run jaw_angle.json --out result --spawn --preview\n"
     "  lipofill run jaw_angle.json --out result --spawn --scan face.obj --landmarks face.json --unit mm\n"
     "  lipofill run jaw_angle.json --out result --spawn --interval-ms 500 --evaluate goal.obj\n"
+    "  lipofill run both_cheeks.json --out result --spawn --fast\n"
     "  lipofill run square.json --out result --server 10.0.0.5:50061 --json --quiet\n";
 
 }  // namespace
 
 void add_run_command(CLI::App& root, Application& application) {
   const auto options = std::make_shared<RunOptions>();
-  CLI::App* command = add_command(root, application, "run", kDescription, kRunExamples,
-                                  [&application, options] { return Run(application, *options).carry_out(); });
+  CLI::App* command = add_command(root, application, "run", kDescription, kRunExamples, [&application, options] {
+    return has_parts(options->plan) ? FaceRun(application, *options).carry_out()
+                                    : Run(application, *options).carry_out();
+  });
   command->add_option("plan", options->plan, "PLAN.json")->required();
   command->add_option("--out", options->out, "folder of results; made when missing")->required();
   add_ground_options(*command, *options,

@@ -9,6 +9,7 @@
 #include "client/cli/describe.h"
 #include "client/cli/listing.h"
 #include "client/cli/units.h"
+#include "client/cpp/errors.h"
 #include "client/cpp/landmarks_file.h"
 #include "client/cpp/model_build.h"
 #include "client/cpp/result_text.h"
@@ -34,6 +35,10 @@ absl::Status RunGround::read_plan() {
   auto plan = load_plan(options_.plan);
   if (!plan.ok()) return plan.status();
   plan_ = *std::move(plan);
+  if (plan_.plan.parts_size() > 0 && !options_.several_parts) {
+    return invalid_fields("a plan of several parts",
+                          {{"parts", "are taken by lipofill run only; make a plan of one part for this"}});
+  }
   if (!options_.scan.empty()) plan_.scan_file = options_.scan;
   if (!options_.bone.empty()) plan_.bone_file = options_.bone;
   if (!options_.landmarks.empty()) {
@@ -105,21 +110,31 @@ absl::Status RunGround::send_scan() {
 }
 
 absl::Status RunGround::build() {
-  v1::BuildModelRequest request;
-  request.set_parent(patient_);
-  *request.mutable_spec() = model_spec_;
-  auto model = build_model(*connection_, request, [this](const std::string& stage, double fraction) {
-    progress_.show(absl::StrFormat("building the model: %.0f %%  %s", 100.0 * fraction, stage));
-  });
+  auto model = build_for(model_spec_, "");
   if (!model.ok()) return model.status();
   model_ = *std::move(model);
-  const v1::ModelReport& report = model_.report();
-  progress_.finish(absl::StrFormat("model: %d hexahedra over %.1f cm2, worst scaled Jacobian %.2f", report.hexahedra(),
-                                   report.area_cm2(), report.min_scaled_jacobian()));
+  return absl::OkStatus();
+}
+
+absl::StatusOr<v1::Model> RunGround::build_for(v1::ModelSpec spec, const std::string& part) {
+  const v1::ScanRegion& sent = model_spec_.scan_region();
+  if (!sent.scan().empty()) spec.mutable_scan_region()->set_scan(sent.scan());
+  if (!sent.bone_scan().empty()) spec.mutable_scan_region()->set_bone_scan(sent.bone_scan());
+  v1::BuildModelRequest request;
+  request.set_parent(patient_);
+  *request.mutable_spec() = std::move(spec);
+  const std::string what = part.empty() ? "model" : absl::StrCat("model of ", part);
+  auto model = build_model(*connection_, request, [this, &what](const std::string& stage, double fraction) {
+    progress_.show(absl::StrFormat("building the %s: %.0f %%  %s", what, 100.0 * fraction, stage));
+  });
+  if (!model.ok()) return model;
+  const v1::ModelReport& report = model->report();
+  progress_.finish(absl::StrFormat("%s: %d hexahedra over %.1f cm2, worst scaled Jacobian %.2f", what,
+                                   report.hexahedra(), report.area_cm2(), report.min_scaled_jacobian()));
   for (const std::string& remark : report.scan_remarks()) progress_.note(absl::StrCat("  ", remark));
   for (const auto line : absl::StrSplit(layers_text(report), '\n', absl::SkipEmpty()))
     progress_.note(std::string(line));
-  return absl::OkStatus();
+  return model;
 }
 
 void RunGround::delete_patient() {

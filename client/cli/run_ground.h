@@ -24,6 +24,7 @@ struct GroundOptions {
   std::string landmarks;  ///< takes the place of the plan's
   std::optional<v1::ScanUnit> unit;
   bool spawn = false;
+  bool several_parts = false;  ///< a plan may have them
 };
 
 /// The options --spawn to --unit of a command that carries out a plan.
@@ -42,6 +43,9 @@ class RunGround {
   absl::Status prepare_patient();
   absl::Status send_scan();
   absl::Status build();
+  /// Builds a model of the scan that was sent.
+  /// @param part  for people, of what it is; empty: of the plan
+  absl::StatusOr<v1::Model> build_for(v1::ModelSpec spec, const std::string& part);
   /// Sends a surface to the patient.
   absl::StatusOr<v1::Scan> send_surface(const std::filesystem::path& file, v1::ScanUnit unit, const char* what);
   /// Deletes the patient with everything of it, where it was made here.

@@ -248,6 +248,8 @@ class ProposalSearch {
     if (!reached.ok()) return reached.status();
     proposal.before = *before;
     proposal.reached = *reached;
+    std::string doubt = describe_doubt(before->skin_to_target.rms, reached->skin_to_target.rms);
+    if (!doubt.empty()) remarks_.push_back(std::move(doubt));
     for (const std::string& remark : best.fit->shape().shape().remarks()) remarks_.push_back(remark);
     if (absl::Status wanted = tell(kCurveDone, "tracing the curve"); !wanted.ok()) return wanted;
     auto curve = trace_trade_off(face_, *best.fit, best.fitted, bounds_, request_.curve_points, unwanted_, cost_);

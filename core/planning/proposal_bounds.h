@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "absl/status/status.h"
+#include "core/plan/simulation_spec.h"
+
 namespace lipofill::planning {
 
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
@@ -28,6 +31,14 @@ struct ProposalBounds {
     return own == zones.end() ? each_zone : own->second;
   }
 };
+
+/// Whether the zones of a plan are those of its proposal, or some of them and others.
+enum class ZoneNumber { kFixed, kSought };
+
+/// Checks that some volumes keep to the bounds. INVALID_ARGUMENT with violations of
+/// "bounds.zone_bounds[name]", also for a name that no zone of the plan has, "bounds.max_zone_ml"
+/// and "bounds.max_total_ml". Checked by tests/unit/planning/proposal_bounds_test.cc.
+absl::Status check_bounds(const ProposalBounds& bounds, const plan::SimulationSpec& plan, ZoneNumber number);
 
 /// What holds a volume; kPath: no more of the fat goes in.
 enum class Bound { kNone, kMinZone, kMaxZone, kMaxTotal, kMaxPressure, kMaxLift, kPath };

@@ -22,6 +22,9 @@ constexpr double kFar = 30e-3;
 constexpr double kLeastOpposite = 0.3;
 /// A target no farther than this is the skin itself [m].
 constexpr double kSame = 5e-6;
+/// A target of which half lies farther from the skin is another face, or in another frame [m]
+/// (assumed).
+constexpr double kOtherFace = 12e-3;
 /// Hollows narrower than this are noise of a scan [m].
 constexpr double kSmoothing = 4e-3;
 
@@ -51,6 +54,18 @@ absl::Status nothing_missing(const Eigen::VectorXd& distance, double min_deficit
       absl::StrFormat("nothing is missing: the target lies %s, and %.2f mm %s it on average; fat lifts skin, so that a "
                       "proposal needs a target at least %.2f mm outside of it",
                       where, std::abs(in_mm(mean)), mean > 0.0 ? "below" : "above", in_mm(min_deficit)));
+}
+
+/// Refuses a target that half of the skin is too far from.
+absl::Status check_same_face(const Eigen::VectorXd& distance) {
+  std::vector<double> known;
+  std::copy_if(distance.begin(), distance.end(), std::back_inserter(known), [](double d) { return !std::isnan(d); });
+  const double median = geometry::compute_distance_statistics(known).median;
+  if (median <= kOtherFace) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      absl::StrFormat("half of the skin lies more than %.1f mm from the target, %.1f mm is the most that is taken for "
+                      "the same face: register the target first (lipofill target), or choose the target of this face",
+                      in_mm(median), in_mm(kOtherFace)));
 }
 
 }  // namespace
@@ -123,6 +138,7 @@ absl::StatusOr<ProposalCase> make_proposal_case(std::shared_ptr<const model::Fac
     opposite += made.points.area[k];
   }
   if (opposite < kLeastOpposite * made.points.area.sum()) return no_overlap(opposite / made.points.area.sum());
+  if (absl::Status same = check_same_face(made.distance); !same.ok()) return same;
   made.deficit = smooth_deficit(*made.model, *made.target, kSmoothing);
   made.is_lacking.assign(static_cast<size_t>(made.points.n()), false);
   for (Index k = 0; k < made.points.n(); ++k) {

@@ -139,6 +139,15 @@ std::string describe_remainder(const Remainder& remainder) {
   return "";
 }
 
+std::string describe_doubt(double before, double reached) {
+  constexpr double kNear = 2e-3;  // [m]
+  if (reached <= kNear) return "";
+  return absl::StrFormat(
+      "the skin stays %.1f mm rms from the target (%.1f mm before): the target may be of another face, in another "
+      "frame, or lack more than these zones can fill; look at it before relying on the volumes",
+      reached * kMillimetresPerMetre, before * kMillimetresPerMetre);
+}
+
 double foresee_without(const ProposalCase& face, const FittedVolumes& fitted, double misfit, Eigen::Index zone) {
   const Eigen::MatrixXd normal = fitted.reach.transpose() * face.points.area.asDiagonal() * fitted.reach;
   const double inverse = normal.completeOrthogonalDecomposition().pseudoInverse()(zone, zone);

@@ -33,6 +33,10 @@ double share_within_reach(const ProposalCase& face, const FittedVolumes& fitted)
 /// One sentence, with its figures.
 std::string describe_remainder(const Remainder& remainder);
 
+/// A sentence for skin that stays so far from its target that the target is in doubt [m]; empty
+/// within 2 mm (assumed: a face that is filled towards its own target stays within 1 mm).
+std::string describe_doubt(double before, double reached);
+
 /// The misfit without a zone where all is linear, the other volumes at their best: the sum of
 /// squares grows by V^2 / (N^-1)_zz, N: the normal matrix.
 /// @param misfit  of all skin with it, as if it were an rms of that which lacks something [m]

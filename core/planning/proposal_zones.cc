@@ -2,11 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
-#include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
-#include "core/base/field_violations.h"
 #include "core/base/units.h"
 #include "core/film/film_metric.h"
 #include "core/plan/plan_placement.h"
@@ -23,29 +19,6 @@ constexpr double kRoundingMl = 1e-7;
 
 double in_ml(double volume) {
   return volume / kCubicMetresPerMillilitre;
-}
-
-void check_bounds(const ProposalBounds& bounds, const std::vector<SoughtZone>& zones, FieldViolations& violations) {
-  std::set<std::string> names;
-  double least = 0.0;
-  for (const SoughtZone& zone : zones) {
-    names.insert(zone.name);
-    least += zone.bounds.low;
-    if (zone.bounds.low <= zone.bounds.high) continue;
-    violations.add(bounds.zones.contains(zone.name) ? absl::StrCat("bounds.zone_bounds[", zone.name, "]")
-                                                    : std::string("bounds.max_zone_ml"),
-                   absl::StrFormat("is %.3f mL, below the least volume of zone '%s', %.3f mL", in_ml(zone.bounds.high),
-                                   zone.name, in_ml(zone.bounds.low)));
-  }
-  for (const auto& [name, range] : bounds.zones) {
-    if (!names.contains(name))
-      violations.add(absl::StrCat("bounds.zone_bounds[", name, "]"), "names no zone of the plan");
-  }
-  if (least > bounds.max_total) {
-    violations.add("bounds.max_total_ml",
-                   absl::StrFormat("is %.3f mL, the least volumes of the zones are %.3f mL together",
-                                   in_ml(bounds.max_total), in_ml(least)));
-  }
 }
 
 /// Adds what the skin over each cell lacks to the zone of the cell.
@@ -75,15 +48,13 @@ absl::StatusOr<std::vector<SoughtZone>> find_sought_zones(const model::FaceModel
                                                           const ProposalBounds& bounds) {
   plan::PlacedPlan placed;
   if (const absl::Status status = plan::place_plan(model, plan, nullptr, placed); !status.ok()) return status;
+  if (const absl::Status possible = check_bounds(bounds, plan, ZoneNumber::kFixed); !possible.ok()) return possible;
   std::vector<SoughtZone> zones;
   for (const plan::FilmSpec& film : plan.films) {
     for (const plan::ZoneSpec& zone : film.zones) {
       zones.push_back({zone.name, film.below_layer, 0.0, bounds.of(zone.name)});
     }
   }
-  FieldViolations violations;
-  check_bounds(bounds, zones, violations);
-  if (!violations.empty()) return violations.to_status();
   add_missing(model, placed.films, deficit, zones);
   return zones;
 }

@@ -21,8 +21,7 @@ struct SoughtZone {
 };
 
 /// The zones of a plan, in the order of its films.
-/// INVALID_ARGUMENT with field violations as place_plan() and, for bounds that admit nothing or
-/// name no zone, of "bounds.zone_bounds[name]", "bounds.max_zone_ml" and "bounds.max_total_ml".
+/// INVALID_ARGUMENT with field violations as place_plan() and check_bounds().
 /// @param deficit  of the skin (proposal_points.h) [m]
 /// Checked by tests/unit/planning/proposal_test.cc.
 absl::StatusOr<std::vector<SoughtZone>> find_sought_zones(const model::FaceModel& model,

@@ -11,4 +11,8 @@ namespace lipofill::planning {
 /// does. Checked by tests/unit/planning/symmetry_plane_test.cc.
 double measure_symmetry_index(const geometry::SurfaceMesh& part, const SkinSurface& face, const Reflection& plane);
 
+/// The same place on another face: the part with each of its vertices at the nearest point of that
+/// face's skin, up to 30 mm away; without the triangles of vertices that have none.
+geometry::SurfaceMesh lay_onto(const geometry::SurfaceMesh& part, const SkinSurface& face);
+
 }  // namespace lipofill::planning

@@ -85,7 +85,7 @@ planning::SkinSurface displace(planning::SkinSurface skin, const SkinPatch& patc
 
 /// Nothing is added for a face whose plane of symmetry cannot be told.
 absl::Status add_symmetry(const model::FaceModel& model, const SkinPatch& patch, const PatchPart& inner,
-                          const Unwanted& unwanted, v1::Evaluation& evaluation) {
+                          const geometry::SurfaceMesh& target, const Unwanted& unwanted, v1::Evaluation& evaluation) {
   if (model.is_square || model.geometry.landmarks.empty()) return absl::OkStatus();
   const auto skin = planning::extract_skin(model.geometry.scan, "the scan");
   if (!skin.ok()) return absl::OkStatus();
@@ -97,6 +97,11 @@ absl::Status add_symmetry(const model::FaceModel& model, const SkinPatch& patch,
   };
   evaluation.mutable_symmetry()->set_before_mm(index_of(inner.before, *skin));
   evaluation.mutable_symmetry()->set_simulated_mm(index_of(inner.after, displace(*skin, patch)));
+  const auto face = planning::extract_skin(target, "the target");
+  if (!face.ok()) return absl::OkStatus();
+  const geometry::SurfaceMesh opposite = planning::lay_onto(inner.before, *face);
+  if (opposite.triangles.empty()) return absl::OkStatus();
+  evaluation.mutable_symmetry()->set_target_mm(index_of(opposite, *face));
   return absl::OkStatus();
 }
 
@@ -143,7 +148,7 @@ absl::Status add_details(const model::FaceModel& model, const SkinPatch& patch, 
     message.set_zone(zones.names[zone]);
     done = compare_both(over, target, unwanted, *message.mutable_before(), *message.mutable_simulated());
   }
-  return done.ok() ? add_symmetry(model, patch, part, unwanted, evaluation) : done;
+  return done.ok() ? add_symmetry(model, patch, part, target, unwanted, evaluation) : done;
 }
 
 }  // namespace lipofill::server

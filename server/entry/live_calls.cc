@@ -17,6 +17,9 @@ namespace {
 constexpr std::chrono::seconds kSlow{1};
 /// Memory is given back to the system when half of so many calls have ended.
 constexpr size_t kManyCalls = 512;
+/// So many sweeps give memory back after much was let go of: the transport frees what a call sent a
+/// moment after the call is removed.
+constexpr int kSweepsAfter = 2;
 
 void end_call(grpc_call* call, const absl::Status& status) {
   ::grpc_call_cancel_with_status(call, static_cast<grpc_status_code>(status.code()),
@@ -64,14 +67,14 @@ void LiveCalls::remove(uint64_t number) {
   const std::lock_guard lock(mutex_);
   Live* live = find(number);
   if (live == nullptr) return;
-  has_let_go_ = has_let_go_ || live->sent + live->kept > kMuch;
+  if (live->sent + live->kept > kMuch || (live->shows && live->waits)) sweeps_to_trim_ = kSweepsAfter;
   end_sent(*live);
   messages_.give_back(live->caller, live->request);
   streams_.give_back(live->caller, live->kept);
   if (const auto own = calls_of_.find(live->caller); --own->second == 0) calls_of_.erase(own);
   calls_.erase(number);
   if (most_calls_ < kManyCalls || calls_.size() > most_calls_ / 2) return;
-  has_let_go_ = true;
+  sweeps_to_trim_ = kSweepsAfter;
   most_calls_ = calls_.size();
 }
 
@@ -98,7 +101,7 @@ absl::Status LiveCalls::keep_request(uint64_t number, uint64_t bytes) {
   messages_.give_back(live->caller, std::exchange(live->request, 0));
   const absl::Status room = messages_.take(live->caller, bytes);
   if (room.ok()) live->request = bytes;
-  has_let_go_ = has_let_go_ || !room.ok();
+  if (!room.ok()) sweeps_to_trim_ = kSweepsAfter;
   return room;
 }
 
@@ -128,7 +131,7 @@ absl::Status LiveCalls::begin_answer(uint64_t number, uint64_t bytes) {
     live->kept -= of_kept;
     return room;
   }
-  has_let_go_ = true;
+  sweeps_to_trim_ = kSweepsAfter;
   grpc_call* call = live->call;
   lock.unlock();
   end_call(call, room);  // its watcher, who asks, holds it
@@ -176,13 +179,15 @@ void LiveCalls::sweep(const std::function<absl::Status(const Principal&)>& check
       ended.emplace_back(live.call, status);
     }
     if (shown_bytes() > bounds_.shown / 4 * 3) end_slowest_viewers(now, ended);
-    gives_back = std::exchange(has_let_go_, false);
+    if (!ended.empty()) sweeps_to_trim_ = kSweepsAfter;
+    gives_back = sweeps_to_trim_ > 0;
+    sweeps_to_trim_ -= gives_back ? 1 : 0;
   }
   for (const auto& [call, status] : ended) {
     end_call(call, status);
     ::grpc_call_unref(call);
   }
-  if (gives_back || !ended.empty()) give_memory_back();
+  if (gives_back) give_memory_back();
 }
 
 uint64_t LiveCalls::bytes() const {

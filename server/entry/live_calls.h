@@ -93,7 +93,7 @@ class LiveCalls {
   CallerAccount messages_;
   CallerAccount streams_;
   uint64_t next_ = 1;
-  bool has_let_go_ = false;  ///< of much that nobody read, since the last sweep
+  int sweeps_to_trim_ = 0;  ///< so many more sweeps give memory back to the system
 };
 
 }  // namespace lipofill::server

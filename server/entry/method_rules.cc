@@ -34,6 +34,7 @@ const std::map<std::string, MethodRule>& rules() {
       {"/lipofill.v1.PatientService/ListScans", {Effect::kNone, Role::kViewer}},
       {"/lipofill.v1.PatientService/UpdatePatient", {Effect::kSteers, Role::kPlanner}},
       {"/lipofill.v1.PatientService/UploadScan", {Effect::kBegins, Role::kPlanner}},
+      {"/lipofill.v1.PlanningService/ArrangeFace", {Effect::kNone, Role::kViewer}},
       {"/lipofill.v1.PlanningService/MakeTarget", {Effect::kBegins, Role::kPlanner}},
       {"/lipofill.v1.PlanningService/MeasureDeficit", {Effect::kNone, Role::kViewer}},
       {"/lipofill.v1.PlanningService/PlanDelivery", {Effect::kBegins, Role::kViewer}},

@@ -4,6 +4,7 @@
 #include "server/entry/unary.h"
 #include "server/planning/deficit_measuring.h"
 #include "server/planning/delivery_calls.h"
+#include "server/planning/face_arrangement.h"
 #include "server/planning/proposal_calls.h"
 #include "server/planning/target_making.h"
 
@@ -42,6 +43,15 @@ PlanningService::Reactor* PlanningService::PlanDelivery(Context* context, const 
     auto delivery = plan_delivery(backend_, *request, caller_has_left(context));
     if (delivery.ok()) *response = *std::move(delivery);
     return delivery.status();
+  });
+}
+
+PlanningService::Reactor* PlanningService::ArrangeFace(Context* context, const v1::ArrangeFaceRequest* request,
+                                                       v1::FaceArrangement* response) {
+  return answer_later(context, request, backend_, [this, context, request, response]() -> absl::Status {
+    auto arrangement = arrange_face(backend_, *request, caller_has_left(context));
+    if (arrangement.ok()) *response = *std::move(arrangement);
+    return arrangement.status();
   });
 }
 

@@ -17,6 +17,7 @@ class PlanningService : public v1::PlanningService::CallbackService {
   Reactor* ProposePlan(Context* context, const v1::ProposePlanRequest* request, v1::Operation* response) override;
   Reactor* MeasureDeficit(Context* context, const v1::MeasureDeficitRequest* request, v1::Deficit* response) override;
   Reactor* PlanDelivery(Context* context, const v1::PlanDeliveryRequest* request, v1::Delivery* response) override;
+  Reactor* ArrangeFace(Context* context, const v1::ArrangeFaceRequest* request, v1::FaceArrangement* response) override;
 
  private:
   Backend& backend_;

@@ -252,6 +252,10 @@ absl::StatusOr<planning::ProposalRequest> to_proposal_request(const v1::Proposal
     request.max_solves = static_cast<int>(spec.max_solves());
   }
   if (spec.has_spread()) request.spread = read_spread(spec.spread(), violations);
+  if (violations.empty()) {
+    const auto number = request.zones ? planning::ZoneNumber::kSought : planning::ZoneNumber::kFixed;
+    violations.absorb("", planning::check_bounds(request.bounds, request.plan, number));
+  }
   if (!violations.empty()) return violations.to_status();
   return request;
 }

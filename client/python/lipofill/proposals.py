@@ -41,6 +41,18 @@ class Proposals:
             progress=progress,
         )
 
+    def arrange(self, parts: dict[str, simulation_pb2.SimulationSpec]) -> pb.FaceArrangement:
+        """Which parts of a face have to be simulated together. Each plan names the model of its
+        part. An arranged part with a `model_spec` needs that model built first; then ask again.
+
+        Raises
+        ------
+        FailedPreconditionError
+            Parts touch, but differ in tissue or fat, or are drawn on the charts of their models.
+        """
+        request = pb.ArrangeFaceRequest(parts=[pb.FacePart(name=name, plan=plan) for name, plan in parts.items()])
+        return self._channel.call(self._stub.ArrangeFace, request)
+
     def deliver(
         self,
         plan: simulation_pb2.SimulationSpec,

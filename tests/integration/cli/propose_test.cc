@@ -35,8 +35,8 @@ TEST_F(ProposeTest, KeepsToBoundsAndTellsPeople) {
   const CommandResult result =
       run("lipofill propose plan.json --target goal.obj --out proposed --spawn --max-total-ml 0.3 --curve-points 1");
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_THAT(result.output, HasSubstr("0.300 mL in 1 zones"));
-  EXPECT_THAT(result.output, HasSubstr("held by max_total_ml"));
+  EXPECT_THAT(result.output, HasSubstr("0.300 mL in 1 zone\n"));
+  EXPECT_THAT(result.output, HasSubstr("held by the largest total volume"));
   EXPECT_THAT(result.output, HasSubstr("the largest total volume holds the volume"));
   EXPECT_THAT(result.errors, HasSubstr("proposing"));
 }
@@ -55,7 +55,7 @@ TEST_F(ProposeTest, RefusesWithFigures) {
   const CommandResult bound = run(
       "lipofill propose plan.json --target goal.obj --out proposed --spawn --quiet --min-zone-ml 2 --max-zone-ml 1");
   EXPECT_EQ(bound.exit_code, 2);
-  EXPECT_THAT(bound.errors, HasSubstr("bounds.max_zone_ml"));
+  EXPECT_THAT(bound.errors, HasSubstr("--max-zone-ml: is 1.000 mL, below the least volume of each zone, 2.000 mL"));
 }
 
 }  // namespace

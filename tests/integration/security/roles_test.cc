@@ -29,6 +29,7 @@ const std::map<std::string, std::string>& expected_roles() {
                    "PatientService/ListModels",
                    "PatientService/ListPatients",
                    "PatientService/ListScans",
+                   "PlanningService/ArrangeFace",
                    "PlanningService/MeasureDeficit",
                    "PlanningService/PlanDelivery",
                    "SimulationService/CheckPlan",

@@ -105,6 +105,8 @@ std::vector<Row> simulation_rows() {
       absent(planning + "ProposePlan", R"({"parent":"patients/berta","spec":{}})"),
       invalid(planning + "PlanDelivery", "{}", {"plan"}),
       absent(planning + "PlanDelivery", R"({"plan":{"model":"patients/anna/models/none"}})"),
+      invalid(planning + "ArrangeFace", "{}", {"parts"}),
+      absent(planning + "ArrangeFace", R"({"parts":[{"name":"a","plan":{"model":"patients/anna/models/none"}}]})"),
       invalid(simulations + "CheckPlan", "{}", {"spec"}),
       absent(simulations + "CheckPlan", R"({"spec":{"model":"patients/anna/models/none"}})"),
       invalid(simulations + "FindShape", "{}", {"spec"}),

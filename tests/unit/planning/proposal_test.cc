@@ -131,6 +131,9 @@ TEST(Proposal, RefusesWithFigures) {
   c.target.points.row(2).array() += 0.5;
   EXPECT_THAT(std::string(c.refusal().message()), HasSubstr("opposite to 0 % of the skin"));
   c.target = target;
+  c.target.points.row(2).array() += 14.0 * kMillimetre;
+  EXPECT_THAT(std::string(c.refusal().message()), HasSubstr("half of the skin lies more than 14."));
+  c.target = target;
 
   c.request.plan.films[0].zones = {{"corner", geometry::ChartBox{0.0, 0.15, 0.0, 0.15}}};
   c.request.plan.injections.clear();

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "core/base/field_violations.h"
+#include "core/geometry/surface_topology.h"
 #include "server/wire/rim_width.h"
+#include "tests/unit/planning/test_heads.h"
 
 namespace lipofill::server {
 namespace {
@@ -95,6 +97,37 @@ TEST(EvaluationDetail, LeavesOutWhatIsNearTheTargetsRim) {
   ASSERT_TRUE(add_details(c.model, c.patch, zones, c.target, 0.015, nullptr, inner).ok());
   EXPECT_EQ(whole.without_rim().skin_vertices(), 25u);
   EXPECT_EQ(inner.without_rim().skin_vertices(), 9u) << "the outermost vertices are 10 mm from the border";
+}
+
+// A head whose left cheek has lost 8 mm, simulated as the even head that is its target too.
+TEST(EvaluationDetail, HasTheSymmetryOfTheFaceAndOfItsTarget) {
+  Case c;
+  std::vector<planning::Bump> bumps = planning::symmetric_bumps();
+  bumps.push_back({{0.75, -0.4, 0.45}, 0.35, -0.008});
+  c.model.geometry.scan = planning::make_head(bumps);
+  c.target = planning::make_even_head();
+  c.model.geometry.landmarks = planning::make_landmarks(c.target);
+  std::vector<int> cheek;
+  const Eigen::Vector3d towards = bumps.back().direction.normalized();
+  for (size_t t = 0; t < c.target.triangles.size(); ++t) {
+    const Eigen::Vector3d corner = c.target.points.col(c.target.triangles[t][0]);
+    if (corner.normalized().dot(towards) > std::cos(0.4)) cheek.push_back(static_cast<int>(t));
+  }
+  const geometry::SubSurface part = geometry::extract_triangles(c.model.geometry.scan, cheek);
+  c.patch.mesh = "scan";
+  c.patch.before = part.mesh;
+  c.patch.after = geometry::extract_triangles(c.target, cheek).mesh;
+  for (const int v : part.whole_of_vertex) c.patch.vertices.push_back(static_cast<uint32_t>(v));
+  v1::Evaluation evaluation;
+  ASSERT_TRUE(add_details(c.model, c.patch, {}, c.target, 0.0, nullptr, evaluation).ok());
+  ASSERT_TRUE(evaluation.has_symmetry());
+  EXPECT_GT(evaluation.symmetry().before_mm(), 2.0);
+  EXPECT_LT(evaluation.symmetry().simulated_mm(), 0.2) << "the skin is where the even head has it";
+  ASSERT_TRUE(evaluation.symmetry().has_target_mm());
+  EXPECT_NEAR(evaluation.symmetry().target_mm(), evaluation.symmetry().simulated_mm(), 0.05);
+  c.target = c.model.geometry.scan;
+  ASSERT_TRUE(add_details(c.model, c.patch, {}, c.target, 0.0, nullptr, evaluation).ok());
+  EXPECT_NEAR(evaluation.symmetry().target_mm(), evaluation.symmetry().before_mm(), 1e-6) << "it is the face itself";
 }
 
 TEST(EvaluationDetail, RimIsWithinItsBounds) {

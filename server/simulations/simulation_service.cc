@@ -13,6 +13,7 @@
 #include "server/simulations/checkpoint_calls.h"
 #include "server/simulations/injection_calls.h"
 #include "server/simulations/shape_stream.h"
+#include "server/simulations/timely_look.h"
 #include "server/simulations/tissue_deck.h"
 #include "server/store/record_names.h"
 #include "server/wire/field_mask.h"
@@ -143,8 +144,8 @@ Reactor* SimulationService::GetSimulation(Context* context, const v1::GetSimulat
     if (auto good = check_field_mask(mask, *v1::Simulation::descriptor(), "read_mask"); !good.ok()) return good;
     if (const auto session = backend_.sessions.find(*id); session != nullptr) {
       is_left = true;
-      session->inspect(
-          reply_to(backend_, *id, reactor, response, [mask](v1::Simulation& shown) { apply_field_mask(mask, shown); }));
+      const auto amend = [mask](v1::Simulation& shown) { apply_field_mask(mask, shown); };
+      TimelyLook::begin(backend_.courier, session, reply_to(backend_, *id, reactor, response, amend));
       return absl::OkStatus();
     }
     const auto record = backend_.store.get_simulation(*id);

@@ -11,6 +11,31 @@ namespace {
 using Simulations = v1::SimulationService::Stub;
 using ::testing::HasSubstr;
 
+// A shape that is found directly is one step of some seconds.
+TEST_F(RunTest, IsLookedAtInTheMiddleOfALongStep) {
+  v1::ModelSpec large = square_spec();
+  large.set_n_xi(90);
+  large.set_n_eta(90);
+  v1::Operation operation;
+  ASSERT_TRUE(build("patients/anna", large, operation).ok());
+  v1::Model model;
+  ASSERT_TRUE(operation.response().UnpackTo(&model)) << operation.error().message();
+  v1::SimulationSpec plan = square_plan(model.name(), 10.0);
+  plan.mutable_time()->set_goal(v1::TimeControl::SETTLED_SHAPE);
+  plan.mutable_time()->clear_settle_skin_speed_mm_per_s();
+  v1::Simulation simulation;
+  ASSERT_TRUE(create_simulation(plan, "x", true, simulation).ok());
+  int seen_running = 0;
+  while (true) {
+    simulation = get_simulation("simulations/x");
+    if (simulation.state() != v1::Simulation::RUNNING && simulation.state() != v1::Simulation::QUEUED) break;
+    if (simulation.state() == v1::Simulation::RUNNING && simulation.summary().steps() == 0) ++seen_running;
+  }
+  EXPECT_EQ(simulation.state(), v1::Simulation::SETTLED) << simulation.reason();
+  EXPECT_EQ(simulation.summary().steps(), 1u);
+  EXPECT_GT(seen_running, 0) << "nobody waits until it is over";
+}
+
 TEST_F(RunTest, FinishesWithFiguresAndSeries) {
   create(0.3, "x");
   const v1::Simulation ended = await_end("simulations/x");

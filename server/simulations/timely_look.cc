@@ -16,6 +16,11 @@ void TimelyLook::begin(Courier& courier, std::shared_ptr<Session> session, Sessi
   look->session_->inspect([look](const absl::StatusOr<SessionView>& view) { look->answer(view); });
 }
 
+void TimelyLook::deliver() {
+  const SessionView view = session_->cached_view();
+  if (!has_ended(view.state)) answer(view);
+}
+
 void TimelyLook::answer(const absl::StatusOr<SessionView>& view) {
   if (is_answered_.exchange(true)) return;
   courier_.forget(weak_from_this());

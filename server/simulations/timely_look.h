@@ -20,8 +20,8 @@ class TimelyLook : public Courier::Stream, public std::enable_shared_from_this<T
   TimelyLook(Courier& courier, std::shared_ptr<Session> session, Session::Reply reply)
       : courier_(courier), session_(std::move(session)), reply_(std::move(reply)) {}
 
-  /// The time is over.
-  void deliver() override { answer(session_->cached_view()); }
+  /// The time is over. Figures of an end are answered as they are then, with the hash of its state.
+  void deliver() override;
 
  private:
   void answer(const absl::StatusOr<SessionView>& view);

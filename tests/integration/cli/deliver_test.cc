@@ -21,7 +21,8 @@ class DeliverTest : public CliTest {
 TEST_F(DeliverTest, ListsPassesThatAddUpToThePlan) {
   const json delivery = answer_of("lipofill deliver plan.json --out list --spawn --json --max-pass-ml 0.05");
   double planned = 0.0;
-  for (const json& injection : read_json("plan.json").at("simulation").at("injections")) {
+  const json plan = read_json("plan.json");
+  for (const json& injection : plan.at("simulation").at("injections")) {
     planned += injection.at("volume_ml").get<double>();
   }
   ASSERT_GT(planned, 0.0);
@@ -44,7 +45,7 @@ TEST_F(DeliverTest, WritesAPlanThatRunsAndSaysHowFarItDiffers) {
   EXPECT_THAT(listed.output, HasSubstr("entry 1 at ("));
   EXPECT_THAT(listed.output, HasSubstr("the skin differs from that of the plan by"));
   const json summary = answer_of("lipofill run list/plan.json --out out --spawn --discard --no-picture --fast --json");
-  EXPECT_EQ(summary.at("state"), "SETTLED");
+  EXPECT_NEAR(summary.at("injected_ml").get<double>(), 0.3, 1e-9);
 }
 
 TEST_F(DeliverTest, RefusesWithTheOptionOrThePlansField) {

@@ -14,8 +14,8 @@ using ::testing::HasSubstr;
 // A shape that is found directly is one step of some seconds.
 TEST_F(RunTest, IsLookedAtInTheMiddleOfALongStep) {
   v1::ModelSpec large = square_spec();
-  large.set_n_xi(90);
-  large.set_n_eta(90);
+  large.set_n_xi(70);
+  large.set_n_eta(70);
   v1::Operation operation;
   ASSERT_TRUE(build("patients/anna", large, operation).ok());
   v1::Model model;

@@ -12,7 +12,9 @@
 namespace lipofill::client {
 namespace {
 
-constexpr size_t kMostZones = 6;
+/// So many zones have room for a heading each; more have a line each.
+constexpr size_t kZonesWithHeading = 2;
+constexpr size_t kMostZones = 7;
 
 double number(const nlohmann::json& object, const char* key) {
   const auto found = object.find(key);
@@ -28,6 +30,14 @@ std::string pressure_text(double pressure_pa) {
   return absl::StrFormat("%.1f kPa, %.0f mmHg", 1e-3 * pressure_pa, pressure_pa / kPascalPerMmhg);
 }
 
+void add_zone(const std::string& name, const nlohmann::json& zone,
+              std::vector<std::pair<std::string, std::string>>& figures) {
+  figures.emplace_back(name, "");
+  figures.emplace_back(
+      "fat", absl::StrFormat("%.1f mL, up to %.1f mm", number(zone, "volume_ml"), number(zone, "max_thickness_mm")));
+  figures.emplace_back("mean pressure", pressure_text(number(zone, "mean_pressure_pa")));
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> figures_of_folder(const std::filesystem::path& folder) {
@@ -41,13 +51,22 @@ std::vector<std::pair<std::string, std::string>> figures_of_folder(const std::fi
       {absl::AsciiStrToLower(text(*summary, "state")), absl::StrFormat("after %.1f s", number(*summary, "time_s"))}};
   const auto zones = summary->find("zones");
   if (zones == summary->end() || !zones->is_array()) return figures;
+  const bool has_headings = zones->size() <= kZonesWithHeading;
+  if (!has_headings) figures.emplace_back("Zones", "");
   for (size_t i = 0; i < zones->size() && i < kMostZones; ++i) {
     const nlohmann::json& zone = (*zones)[i];
     if (!zone.is_object()) continue;
-    figures.emplace_back(absl::StrReplaceAll(text(zone, "name"), {{"_", " "}}), "");
-    figures.emplace_back(
-        "fat", absl::StrFormat("%.1f mL, up to %.1f mm", number(zone, "volume_ml"), number(zone, "max_thickness_mm")));
-    figures.emplace_back("mean pressure", pressure_text(number(zone, "mean_pressure_pa")));
+    const std::string name = absl::StrReplaceAll(text(zone, "name"), {{"_", " "}});
+    if (has_headings) {
+      add_zone(name, zone, figures);
+    } else {
+      figures.emplace_back(
+          name, absl::StrFormat("%.1f mL, %.1f mm, %.0f mmHg", number(zone, "volume_ml"),
+                                number(zone, "max_thickness_mm"), number(zone, "mean_pressure_pa") / kPascalPerMmhg));
+    }
+  }
+  if (zones->size() > kMostZones) {
+    figures.emplace_back("and others", absl::StrFormat("%d, in summary.json", zones->size() - kMostZones));
   }
   return figures;
 }

@@ -72,7 +72,7 @@ absl::Status add_control_point(const json& point, bool from_ras, const std::stri
   for (size_t c = 0; c < 3; ++c) {
     const json& x = (*position)[c];
     if (!x.is_number()) return wrong(absl::StrCat(where, ".position[", c, "] is not a number"));
-    at[c] = from_ras && c < 2 ? -x.get<double>() : x.get<double>();
+    at[c] = from_ras && c < 2 ? 0.0 - x.get<double>() : x.get<double>();
   }
   return add(list, std::move(name), at, where);
 }

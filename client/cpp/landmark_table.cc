@@ -81,7 +81,7 @@ absl::Status add_row(const Row& row, const Columns& columns, char separator, siz
       return wrong_at(line,
                       absl::StrCat("coordinate ", c + 1, " of '", name, "' is '", text, "', not a finite number"));
     }
-    at[c] = columns.is_ras && c < 2 ? -*value : *value;
+    at[c] = columns.is_ras && c < 2 ? 0.0 - *value : *value;
   }
   list.points.emplace_back(name, at);
   return absl::OkStatus();

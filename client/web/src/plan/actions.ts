@@ -72,8 +72,8 @@ export async function uploadFace(fileName: string, content: ArrayBuffer, unit: S
   });
 }
 
-export function takeLandmarks(text: string, unit = scanFile.value.unit): void {
-  const { points, axes } = parseLandmarks(text, unit);
+export function takeLandmarks(text: string, unit = scanFile.value.unit, fileName?: string): void {
+  const { points, axes } = parseLandmarks(text, unit, fileName);
   editPlan(({ model: spec }) => {
     if (spec?.geometry.case !== "scanRegion") return;
     spec.geometry.value.landmarksMm = points;

@@ -113,6 +113,8 @@ TEST(PickedPoints, AreThoseThatAreActive) {
   EXPECT_THAT(list->points, ElementsAre(std::pair("go <l>", Point{1, 2, 3})));
   EXPECT_EQ(list->passed_over, 1u);
   EXPECT_THAT(std::string(parse_picked_points("<PickedPoints><point").status().message()), HasSubstr("is not XML"));
+  const char* laughs = "<!DOCTYPE a [<!ENTITY b \"xx\"><!ENTITY c \"&b;&b;\">]><PickedPoints/>";
+  EXPECT_THAT(std::string(parse_picked_points(laughs).status().message()), HasSubstr("declares entities"));
   EXPECT_THAT(std::string(parse_picked_points("<a/>").status().message()), HasSubstr("no element PickedPoints"));
   EXPECT_THAT(
       std::string(

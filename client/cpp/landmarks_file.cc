@@ -184,7 +184,7 @@ absl::StatusOr<Landmarks> load_landmarks(const std::string& path, v1::ScanUnit s
 
 absl::Status save_landmarks(const Landmarks& landmarks, const std::filesystem::path& file) {
   const std::vector<std::pair<std::string, Point>> points(landmarks.points_mm.begin(), landmarks.points_mm.end());
-  const std::string ending = ending_of(file.string());
+  const std::string ending = absl::AsciiStrToLower(file.extension().string());
   if (absl::EndsWith(absl::AsciiStrToLower(file.string()), ".mrk.json")) {
     return write_text_file(file, write_slicer_markups(points));
   }

@@ -89,7 +89,7 @@ def parse_picked_points(text: str) -> LandmarkList:
 
 
 def _heading(row: Sequence[str], landmarks: LandmarkList) -> Optional[Tuple[int, List[int], int, bool]]:
-    """Columns of the name, the coordinates and whether it is placed, and whether they are in RAS."""
+    """Columns of the name, the coordinates and whether it is placed; whether they are in RAS."""
     name, xyz, placed, is_ras = -1, [-1, -1, -1], -1, False
     for k, cell in enumerate(cell.lower() for cell in row):
         axis = re.fullmatch(r"([xrlyapzs])(?:[_ ]?[(\[]?(mm|cm|m)[)\]]?)?", cell)
@@ -117,7 +117,7 @@ def _is_number(text: str) -> bool:
 
 
 def parse_table(text: str) -> LandmarkList:
-    """A table of names and coordinates (.csv, .tsv, .txt), with or without a line of column names."""
+    """A table of names and coordinates (.csv, .tsv, .txt), with or without a line of headings."""
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     landmarks = LandmarkList()
     if not lines:

@@ -90,7 +90,7 @@ export function parseFcsv(text: string): LandmarkList {
 
 const entities: Record<string, string> = { lt: "<", gt: ">", amp: "&", quot: '"', apos: "'" };
 
-/** Points picked in MeshLab (.pp): of this XML only the elements "point" and their attributes count. */
+/** Points picked in MeshLab (.pp): of this XML the elements "point" and their attributes count. */
 export function parsePickedPoints(text: string): LandmarkList {
   if (!text.includes("<PickedPoints")) throw new Error("this file has no element PickedPoints");
   const list: LandmarkList = { points: [] };

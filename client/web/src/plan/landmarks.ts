@@ -88,9 +88,9 @@ function takeList(list: LandmarkList, unit: ScanUnit): Landmarks {
 }
 
 /**
- * A landmarks file as `lipofill run` takes it: the project's own JSON (an object "landmarks" of name
- * to [x, y, z], optionally "axes" and "units"), or, by the ending of its name, a file of 3D Slicer
- * (.mrk.json, .fcsv), MeshLab (.pp) or a table (.csv, .tsv, .txt).
+ * A landmarks file as `lipofill run` takes it: the project's own JSON (an object "landmarks" of
+ * name to [x, y, z], optionally "axes" and "units"), or, by the ending of its name, a file of 3D
+ * Slicer (.mrk.json, .fcsv), MeshLab (.pp) or a table (.csv, .tsv, .txt).
  */
 export function parseLandmarks(text: string, unit: ScanUnit, fileName = "landmarks.json"): Landmarks {
   const ending = fileName.slice(fileName.lastIndexOf(".")).toLowerCase();

@@ -184,7 +184,7 @@ void add_target_command(CLI::App& root, Application& application) {
       [&application, options] { return make(application, *options); });
   command->add_option("face", options->face, "the face as it is: .obj, .ply or .stl, or patients/ID/scans/ID")
       ->required();
-  command->add_option("--landmarks", options->landmarks, "its landmarks, FILE.json or FILE.json#OBJECT");
+  command->add_option("--landmarks", options->landmarks, "its landmarks, FILE.json, FILE.json#OBJECT, .mrk.json, .fcsv, .pp or .csv");
   command->add_option("--healthy", options->healthy, "mirror this side, the subject's own: left or right")
       ->check(CLI::IsMember({"left", "right"}));
   command->add_option("--surface", options->surface,

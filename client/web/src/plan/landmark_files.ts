@@ -7,6 +7,7 @@ export interface LandmarkList {
   points: [string, Point][];
   /** where the file tells */
   millimetresPerUnit?: number;
+  wasRas?: boolean;
 }
 
 function number(text: unknown, what: string): number {
@@ -36,6 +37,7 @@ export function parseMarkups(markups: Markup[]): LandmarkList {
   const list: LandmarkList = { points: [] };
   for (const markup of markups) {
     const ras = isRas(String(markup.coordinateSystem ?? "LPS"), systems);
+    if (ras) list.wasRas = true;
     const unit = Array.isArray(markup.coordinateUnits) ? markup.coordinateUnits[0] : markup.coordinateUnits;
     if (unit !== undefined && !(unit in units)) throw new Error(`coordinateUnits is ${JSON.stringify(unit)}`);
     if (unit !== undefined) list.millimetresPerUnit = units[unit];
@@ -85,6 +87,7 @@ export function parseFcsv(text: string): LandmarkList {
     const at = [columns.x, columns.y, columns.z].map((k) => number(cells[k], `a coordinate of ${label}`)) as Point;
     list.points.push([label, turned(ras, at)]);
   }
+  list.wasRas = ras;
   return list;
 }
 
@@ -161,6 +164,7 @@ export function parseTable(text: string): LandmarkList {
     list.points.push([label, turned(columns.ras, at)]);
   });
   list.millimetresPerUnit = columns?.millimetresPerUnit;
+  list.wasRas = columns?.ras;
   return list;
 }
 

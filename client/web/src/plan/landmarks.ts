@@ -23,6 +23,8 @@ import { understandName } from "./landmark_names";
 export interface Landmarks {
   points: Record<string, Vector3>;
   axes?: HeadAxes;
+  /** what was made of the file, a sentence each */
+  remarks?: string[];
 }
 
 export function vectorOf(point: ArrayLike<number>): Vector3 {
@@ -84,7 +86,12 @@ function takeList(list: LandmarkList, unit: ScanUnit): Landmarks {
     points[name] = vectorOf(at.map((v) => v * factor));
   }
   if (list.points.length === 0) throw new Error("this file has no landmark");
-  return { points };
+  const unknown = list.points.filter(([given]) => understandName(given) === undefined).length;
+  const remarks = [
+    ...(list.wasRas ? ["The landmarks are in RAS and were turned to LPS."] : []),
+    ...(unknown > 0 ? [`${unknown} of the names are not known as landmarks and stay as they are.`] : []),
+  ];
+  return { points, remarks };
 }
 
 /**

@@ -47,7 +47,9 @@ class WallFinder {
   std::vector<double> count_extremes() const;
   std::vector<std::map<int, double>> pair_walls() const;
   void colour_walls(const std::vector<std::map<int, double>>& pairs, const std::vector<double>& extremes);
-  void colour_between();
+  void grow_walls();
+  void colour_triangles();
+  void leave_out_rim();
   int stride() const { return std::max(1, mesh_.n_triangles() / kMostSamples); }
 
   const SurfaceMesh& mesh_;
@@ -195,8 +197,26 @@ void WallFinder::colour_walls(const std::vector<std::map<int, double>>& pairs, c
   }
 }
 
-/// Parts between the walls stay where they are joined to the outer wall alone.
-void WallFinder::colour_between() {
+/// Lets the walls grow, all at once, over edges that do not bend sharply into what lies between
+/// them: near the rim a ray passes the other wall by.
+void WallFinder::grow_walls() {
+  std::vector<int> front;
+  for (size_t t = 0; t < wall_.size(); ++t) {
+    if (wall_[t] >= 0) front.push_back(static_cast<int>(t));
+  }
+  for (size_t k = 0; k < front.size(); ++k) {
+    const auto t = static_cast<size_t>(front[k]);
+    for (const int neighbour : across_[t]) {
+      const auto n = static_cast<size_t>(neighbour);
+      if (neighbour < 0 || wall_[n] >= 0 || normal_[t].dot(normal_[n]) < kSharpestJoint) continue;
+      wall_[n] = wall_[t];
+      front.push_back(neighbour);
+    }
+  }
+}
+
+/// Parts that no wall grew into stay where they are joined to the outer wall alone.
+void WallFinder::colour_triangles() {
   std::vector<bool> between(wall_.size());
   for (size_t t = 0; t < wall_.size(); ++t) {
     between[t] = wall_[t] < 0;
@@ -216,6 +236,22 @@ void WallFinder::colour_between() {
   }
 }
 
+/// The rim has corners on both walls: it goes, also where it bends too little to be told from the
+/// outer wall.
+void WallFinder::leave_out_rim() {
+  std::vector<bool> is_of_inner_wall(static_cast<size_t>(mesh_.n_vertices()), false);
+  for (size_t t = 0; t < wall_.size(); ++t) {
+    if (wall_[t] < 0 || is_outer_[t]) continue;
+    for (const int v : mesh_.triangles[t]) is_of_inner_wall[static_cast<size_t>(v)] = true;
+  }
+  for (size_t t = 0; t < wall_.size(); ++t) {
+    const auto& triangle = mesh_.triangles[t];
+    const bool touches_inner =
+        std::any_of(triangle.begin(), triangle.end(), [&](int v) { return is_of_inner_wall[static_cast<size_t>(v)]; });
+    if (touches_inner) is_outer_[t] = false;
+  }
+}
+
 std::optional<Shell> WallFinder::find() {
   const auto thickness = measure_thickness();
   if (!thickness) return std::nullopt;
@@ -228,7 +264,9 @@ std::optional<Shell> WallFinder::find() {
   wall_ = walls.label;
   n_walls_ = walls.count;
   colour_walls(pair_walls(), count_extremes());
-  colour_between();
+  grow_walls();
+  colour_triangles();
+  leave_out_rim();
   Shell shell;
   shell.thickness = *thickness;
   shell.n_inner = static_cast<size_t>(std::count(is_outer_.begin(), is_outer_.end(), false));

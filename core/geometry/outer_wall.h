@@ -20,11 +20,11 @@ struct Shell {
 /// them at no more than twice the median distance make walls, joined over edges that bend by less
 /// than 60 degrees. Of two walls behind one another the outer one is the one that reaches farthest
 /// in more of 218 directions; the walls behind an outer one are inner, and the other way round.
-/// What lies between the walls goes with the wall it is joined to, and the rim that joins them goes
-/// too.
+/// What lies between the walls goes with the wall that it continues smoothly, and the rim that
+/// joins them goes too.
 /// @param mesh  without degenerate triangles, at most two triangles an edge
-/// @return nothing for a surface that is no shell
-/// Deterministic. Checked by tests/unit/geometry/outer_wall_test.cc.
+/// @return nothing for a surface that is no shell Deterministic. Checked by
+/// tests/unit/geometry/outer_wall_test.cc.
 std::optional<Shell> find_shell(const SurfaceMesh& mesh);
 
 }  // namespace lipofill::geometry

@@ -15,6 +15,7 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(prometheus-cpp REQUIRED)
 find_package(SQLite3 REQUIRED)
 find_package(OpenSSL REQUIRED)
+find_package(LibXml2 REQUIRED)
 find_package(VTK 9.1 REQUIRED COMPONENTS
   CommonCore CommonDataModel CommonExecutionModel CommonTransforms FiltersCore FiltersGeneral FiltersGeometry
   FiltersModeling FiltersSources FiltersVerdict IOGeometry IOImage IOLegacy IOPLY IOXML ImagingCore ImagingGeneral

@@ -59,18 +59,24 @@ std::string describe(const v1::Patient& patient) {
   return text;
 }
 
-std::string describe(const v1::Scan& scan) {
-  std::string text = absl::StrFormat("%s\n  file      %s, %d bytes, %s\n  sha256    %s\n", scan.name(),
-                                     v1::ScanFormat_Name(scan.format()), scan.size_bytes(),
-                                     v1::ScanUnit_Name(scan.unit()), scan.sha256());
-  if (!scan.complete()) return absl::StrCat(text, "  received  ", scan.received_bytes(), " bytes so far\n");
-  const v1::ScanReport& report = scan.report();
+std::string surface_text(const v1::ScanReport& report) {
+  std::string text;
   absl::StrAppendFormat(&text, "  surface   %d vertices, %d triangles, %.0f x %.0f x %.0f mm\n", report.vertices(),
                         report.triangles(), report.size_x_mm(), report.size_y_mm(), report.size_z_mm());
   absl::StrAppendFormat(&text, "  found     %d components, %d holes, %d non-manifold edges, %d degenerate triangles\n",
                         report.components(), report.boundary_loops(), report.non_manifold_edges(),
                         report.degenerate_triangles());
+  for (const std::string& remark : report.read_remarks()) absl::StrAppend(&text, "  read      ", remark, "\n");
+  for (const std::string& remark : report.mending_remarks()) absl::StrAppend(&text, "  mended    ", remark, "\n");
   return text;
+}
+
+std::string describe(const v1::Scan& scan) {
+  std::string text = absl::StrFormat("%s\n  file      %s, %d bytes, %s\n  sha256    %s\n", scan.name(),
+                                     v1::ScanFormat_Name(scan.format()), scan.size_bytes(),
+                                     v1::ScanUnit_Name(scan.unit()), scan.sha256());
+  if (!scan.complete()) return absl::StrCat(text, "  received  ", scan.received_bytes(), " bytes so far\n");
+  return absl::StrCat(text, surface_text(scan.report()));
 }
 
 std::string layers_text(const v1::ModelReport& report) {

@@ -51,6 +51,7 @@ absl::Status draw_picture(const std::filesystem::path& folder, Picture picture, 
   std::vector<std::string> command = {this_program().string(), "render", folder.string(), "--out", png.string(),
                                       "--in-this-process"};
   if (picture == Picture::kDistance) command.push_back("--distance");
+  if (picture == Picture::kScan) command.push_back("--scan");
   absl::Status status = absl::FailedPreconditionError(kNoScreen);
   if (has_display()) status = run_drawing(command);
   if (!absl::IsFailedPrecondition(status)) return status;

@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
 #include "client/cli/application.h"
 #include "client/cli/picture.h"
 #include "client/cli/process.h"
@@ -9,7 +10,9 @@
 #include "client/cli/result_files.h"
 #include "client/cli/run_record.h"
 #include "client/cpp/io/result_folder.h"
+#include "client/cpp/json_file.h"
 #include "client/cpp/picture/result_picture.h"
+#include "client/cpp/picture/scan_picture.h"
 #include "client/cpp/result_text.h"
 
 namespace lipofill::client {
@@ -31,10 +34,24 @@ struct Options {
   std::string result;
   std::string out;
   bool distance = false;
+  bool scan = false;
   bool in_this_process = false;
 };
 
+absl::Status draw_scan_here(const Options& options) {
+  const std::filesystem::path folder(options.result);
+  const auto text = read_text_file(folder / kTextToDraw);
+  if (!text.ok()) return text.status();
+  PictureRequest request;
+  request.mesh = folder / kScanToDraw;
+  request.png = options.out;
+  request.caption = kNotAMedicalDevice;
+  for (const auto line : absl::StrSplit(*text, '\n', absl::SkipEmpty())) request.remarks.emplace_back(line);
+  return draw_scan_picture(request);
+}
+
 absl::Status draw_here(const Options& options) {
+  if (options.scan) return draw_scan_here(options);
   const auto record = read_run_record(options.result);
   if (!record.ok()) return record.status();
   PictureRequest request;
@@ -101,7 +118,8 @@ void add_render_command(CLI::App& root, Application& application) {
       ->type_name("FILE.png");
   command->add_flag("--distance", options->distance,
                     "the distance to the target that lipofill evaluate found, in place of displacement and pressure");
-  // This option is hidden: it is for the child that lipofill starts under an X server.
+  // These options are hidden: they are for the child that lipofill starts under an X server.
+  command->add_flag("--scan", options->scan)->group("");
   command->add_flag("--in-this-process", options->in_this_process)->group("");
 }
 

@@ -26,7 +26,7 @@ void add_ground_options(CLI::App& command, GroundOptions& options, const std::st
   command.add_option("--scan", options.scan, "surface in place of the plan's");
   command.add_option("--bone", options.bone, "surface of the bone in place of the plan's, in the frame of the scan");
   command.add_option("--landmarks", options.landmarks,
-                     "landmarks in place of the plan's; FILE.json or FILE.json#object");
+                     "landmarks in place of the plan's; FILE.json, FILE.json#object, .mrk.json, .fcsv, .pp or .csv");
   command.add_option("--unit", options.unit, "unit of the scan, and of what --bone names: mm, cm or m")
       ->transform(CLI::CheckedTransformer(kUnitNames));
 }
@@ -132,6 +132,7 @@ absl::StatusOr<v1::Model> RunGround::build_for(v1::ModelSpec spec, const std::st
   progress_.finish(absl::StrFormat("%s: %d hexahedra over %.1f cm2, worst scaled Jacobian %.2f", what,
                                    report.hexahedra(), report.area_cm2(), report.min_scaled_jacobian()));
   for (const std::string& remark : report.scan_remarks()) progress_.note(absl::StrCat("  ", remark));
+  for (const std::string& remark : plan_.landmark_remarks) progress_.note(absl::StrCat("  ", remark));
   for (const auto line : absl::StrSplit(layers_text(report), '\n', absl::SkipEmpty()))
     progress_.note(std::string(line));
   return model;

@@ -6,6 +6,7 @@
 #include "client/cli/describe.h"
 #include "client/cli/listing.h"
 #include "client/cli/progress_line.h"
+#include "client/cli/scan_check.h"
 #include "client/cli/units.h"
 #include "client/cpp/scan_upload.h"
 #include "lipofill/v1/patient_service.grpc.pb.h"
@@ -87,6 +88,8 @@ void add_scan_commands(CLI::App& root, Application& application) {
               [&application, options] { return remove(application, *options); })
       ->add_option("scan", options->name, "patients/ID/scans/ID")
       ->required();
+  add_scan_check_command(*group, application);
+  add_scan_landmarks_command(*group, application);
   add_volume_commands(*group, application);
 }
 

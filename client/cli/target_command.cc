@@ -114,9 +114,10 @@ absl::Status write_obj(const std::vector<Array>& arrays, const std::filesystem::
   const Array* cells = find_array(arrays, "scan.cells");
   if (points == nullptr || cells == nullptr) return absl::DataLossError("the scan came without its surface");
   std::ofstream file(path);
-  const auto coordinates = points->floats();
+  if (!points->has_points()) return absl::DataLossError("the scan came with points of an unknown type");
+  const std::vector<double> coordinates = points->to_doubles();
   for (size_t k = 0; k + 2 < coordinates.size(); k += 3) {
-    file << absl::StrFormat("v %.9g %.9g %.9g\n", coordinates[k], coordinates[k + 1], coordinates[k + 2]);
+    file << absl::StrFormat("v %.14g %.14g %.14g\n", coordinates[k], coordinates[k + 1], coordinates[k + 2]);
   }
   const auto corners = cells->uint32s();
   for (size_t k = 0; k + 2 < corners.size(); k += 3) {
@@ -183,7 +184,7 @@ void add_target_command(CLI::App& root, Application& application) {
       [&application, options] { return make(application, *options); });
   command->add_option("face", options->face, "the face as it is: .obj, .ply or .stl, or patients/ID/scans/ID")
       ->required();
-  command->add_option("--landmarks", options->landmarks, "its landmarks, FILE.json or FILE.json#OBJECT");
+  command->add_option("--landmarks", options->landmarks, "its landmarks, FILE.json, FILE.json#OBJECT, .mrk.json, .fcsv, .pp or .csv");
   command->add_option("--healthy", options->healthy, "mirror this side, the subject's own: left or right")
       ->check(CLI::IsMember({"left", "right"}));
   command->add_option("--surface", options->surface,

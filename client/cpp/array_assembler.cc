@@ -38,6 +38,8 @@ std::optional<ElementType> element_type_of(v1::ArrayType type) {
       return ElementType::kUint32;
     case v1::UINT8:
       return ElementType::kUint8;
+    case v1::FLOAT64:
+      return ElementType::kFloat64;
     default:
       return std::nullopt;
   }

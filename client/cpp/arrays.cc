@@ -17,7 +17,14 @@ std::span<const T> view(const Array& array, ElementType type) {
 }  // namespace
 
 size_t element_size(ElementType type) {
-  return type == ElementType::kUint8 ? 1 : 4;
+  switch (type) {
+    case ElementType::kUint8:
+      return 1;
+    case ElementType::kFloat64:
+      return 8;
+    default:
+      return 4;
+  }
 }
 
 std::string_view Array::mesh() const {
@@ -37,6 +44,15 @@ std::span<const uint32_t> Array::uint32s() const {
 }
 std::span<const uint8_t> Array::uint8s() const {
   return view<uint8_t>(*this, ElementType::kUint8);
+}
+
+std::span<const double> Array::doubles() const {
+  return view<double>(*this, ElementType::kFloat64);
+}
+
+std::vector<double> Array::to_doubles() const {
+  if (type == ElementType::kFloat64) return {doubles().begin(), doubles().end()};
+  return {floats().begin(), floats().end()};
 }
 
 const Array* find_array(std::span<const Array> arrays, std::string_view name) {

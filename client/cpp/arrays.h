@@ -9,7 +9,7 @@
 
 namespace lipofill::client {
 
-enum class ElementType { kFloat32, kUint32, kUint8 };
+enum class ElementType { kFloat32, kUint32, kUint8, kFloat64 };
 enum class ArrayLocation { kMesh, kPoint, kCell };
 
 size_t element_size(ElementType type);
@@ -34,6 +34,12 @@ struct Array {
   std::span<const float> floats() const;
   std::span<const uint32_t> uint32s() const;
   std::span<const uint8_t> uint8s() const;
+  std::span<const double> doubles() const;
+
+  /// Points are in single precision, or in double precision where they lie far from the origin.
+  bool has_points() const { return type == ElementType::kFloat32 || type == ElementType::kFloat64; }
+  /// The values of points in double precision. Precondition: has_points().
+  std::vector<double> to_doubles() const;
 };
 
 /// The array of this name; nullptr when there is none.

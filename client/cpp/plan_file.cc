@@ -53,6 +53,7 @@ absl::Status load_plan_landmarks(PlanFile* plan) {
   const auto landmarks = load_landmarks(*plan->landmarks_file, plan->plan.scan().unit());
   if (!landmarks.ok()) return landmarks.status();
   set_landmarks(*landmarks, plan->plan.mutable_model()->mutable_scan_region());
+  plan->landmark_remarks = landmarks->remarks;
   return absl::OkStatus();
 }
 

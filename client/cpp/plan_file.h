@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "lipofill/v1/plan.pb.h"
@@ -16,6 +17,7 @@ struct PlanFile {
   std::optional<std::filesystem::path> scan_file;
   std::optional<std::filesystem::path> bone_file;
   std::optional<std::string> landmarks_file;  ///< may end in #object
+  std::vector<std::string> landmark_remarks;  ///< what load_plan_landmarks made of it, a sentence each
 };
 
 /// Reads a plan: the proto3 JSON form of lipofill.v1.Plan. Files it names are taken relative to it.

@@ -5,15 +5,6 @@
 namespace lipofill::geometry {
 namespace {
 
-std::vector<float> to_points_mm(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
-  std::vector<float> values;
-  values.reserve(static_cast<size_t>(points.size()));
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(kMillimetresPerMetre * points(c, i)));
-  }
-  return values;
-}
-
 template <typename Visit>
 void for_each_column(const LayeredGrid& grid, Visit&& visit) {
   for (int j = 0; j < grid.n_eta; ++j) {
@@ -29,6 +20,15 @@ void add_quadrilateral(const LayeredGrid& grid, int level, int i, int j, std::ve
 }
 
 }  // namespace
+
+std::vector<double> to_points_mm(const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  std::vector<double> values;
+  values.reserve(static_cast<size_t>(points.size()));
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    for (int c = 0; c < 3; ++c) values.push_back(kMillimetresPerMetre * points(c, i));
+  }
+  return values;
+}
 
 MeshTopology make_skin_mesh(const LayeredGrid& grid) {
   MeshTopology mesh{"skin", to_points_mm(grid.nodes.leftCols(grid.nodes_per_level())), {}, 4};

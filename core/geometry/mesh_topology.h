@@ -11,13 +11,17 @@ namespace lipofill::geometry {
 /// A mesh whose points move: what viewers draw. `kind` 3: triangles, 4: quadrilaterals, 8:
 /// hexahedra.
 struct MeshTopology {
-  std::string name;              ///< "skin", "scan", "film/<name>", "tissue"
-  std::vector<float> points_mm;  ///< (n_points, 3) at rest
-  std::vector<uint32_t> cells;   ///< (n_cells, kind)
+  std::string name;               ///< "skin", "scan", "film/<name>", "tissue"
+  std::vector<double> points_mm;  ///< (n_points, 3) at rest
+  std::vector<uint32_t> cells;    ///< (n_cells, kind)
   int kind = 3;
   int n_points() const { return static_cast<int>(points_mm.size() / 3); }
   int n_cells() const { return static_cast<int>(cells.size()) / kind; }
 };
+
+/// Positions in metres as points of a mesh, in double precision: a scan may lie hundreds of
+/// kilometres from the origin.
+std::vector<double> to_points_mm(const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
 /// "skin": the nodes of level 0 and the quadrilaterals between them, anticlockwise seen from
 /// outside.

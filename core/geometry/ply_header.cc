@@ -19,7 +19,7 @@ absl::Status error_at(size_t line, std::string_view what) {
 }
 
 std::optional<PlyType> parse_type(std::string_view word) {
-  constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes = {{{"char", PlyType::kInt8},
+  constexpr std::array<std::pair<std::string_view, PlyType>, 18> kTypes = {{{"char", PlyType::kInt8},
                                                                             {"int8", PlyType::kInt8},
                                                                             {"uchar", PlyType::kUint8},
                                                                             {"uint8", PlyType::kUint8},
@@ -31,6 +31,8 @@ std::optional<PlyType> parse_type(std::string_view word) {
                                                                             {"int32", PlyType::kInt32},
                                                                             {"uint", PlyType::kUint32},
                                                                             {"uint32", PlyType::kUint32},
+                                                                            {"int64", PlyType::kInt64},
+                                                                            {"uint64", PlyType::kUint64},
                                                                             {"float", PlyType::kFloat32},
                                                                             {"float32", PlyType::kFloat32},
                                                                             {"double", PlyType::kFloat64},
@@ -134,13 +136,24 @@ absl::Status parse_line(std::string_view line, size_t number, PlyHeader& header,
   }
   if (keyword == "element") return parse_element(line, number, header);
   if (keyword == "property") return parse_property(line, number, header);
-  return error_at(number, absl::StrCat(quote(keyword), " is not a statement of a PLY header"));
+  ++header.unknown_lines;
+  return absl::OkStatus();
+}
+
+/// Where a line of the text ends.
+size_t end_of(std::string_view bytes, std::string_view line) {
+  return static_cast<size_t>(line.data() + line.size() - bytes.data());
+}
+
+bool ends_with_lone_return(std::string_view bytes, std::string_view line) {
+  const std::string_view behind = bytes.substr(end_of(bytes, line));
+  return behind.starts_with('\r') && !behind.starts_with("\r\n");
 }
 
 }  // namespace
 
 size_t size_of(PlyType type) {
-  constexpr std::array<size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
+  constexpr std::array<size_t, 10> kSizes = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
   return kSizes[static_cast<size_t>(type)];
 }
 
@@ -148,17 +161,19 @@ absl::StatusOr<PlyHeader> parse_ply_header(std::string_view bytes) {
   PlyHeader header;
   LineScanner lines(bytes);
   std::string_view line;
-  if (!lines.next(line) || take_word(line) != "ply") {
+  if (std::string_view first; !lines.next(line) || (first = line, take_word(first) != "ply")) {
     return absl::InvalidArgumentError("line 1: the file does not start with 'ply', so it is not a PLY file");
   }
+  const bool has_lone_returns = ends_with_lone_return(bytes, line);
   bool has_format = false;
   while (lines.next(line)) {
     std::string_view words = line;
     if (take_word(words) == "end_header") {
       if (!has_format) return error_at(lines.line_number(), "the header ends without a format");
-      header.body_offset = bytes.size() - lines.rest().size();
+      const size_t behind = bytes.size() - lines.rest().size();
+      header.body_offset = has_lone_returns ? std::min(end_of(bytes, line) + 1, behind) : behind;
       header.body_line = lines.line_number();
-      const absl::Status counts = check_counts(header, lines.rest().size());
+      const absl::Status counts = check_counts(header, bytes.size() - header.body_offset);
       if (!counts.ok()) return counts;
       return header;
     }

@@ -1,5 +1,5 @@
-// PLY: text, binary little-endian and binary big-endian. Elements other than vertex and face are
-// passed over.
+// PLY: text, binary little-endian and binary big-endian. Elements other than vertex, face and
+// tristrips are passed over, with a remark.
 
 #include <algorithm>
 #include <bit>
@@ -22,7 +22,8 @@ class PlyBody {
   PlyBody(std::string_view bytes, const PlyHeader& header)
       : bytes_(bytes), encoding_(header.encoding), offset_(header.body_offset), line_(header.body_line) {}
 
-  /// Reads the next number; none at the end of the file, and for text that is no finite number.
+  /// Reads the next number, which need not be finite; none at the end of the file, and for text
+  /// that is no number.
   std::optional<double> next(PlyType type) {
     return encoding_ == PlyEncoding::kAscii ? next_word() : next_binary(type);
   }
@@ -35,21 +36,27 @@ class PlyBody {
 
   std::string explain_failure() const {
     if (encoding_ == PlyEncoding::kAscii && !word_.empty()) {
-      return absl::StrCat(where(), ": ", quote(word_), " is not a finite number");
+      return absl::StrCat(where(), ": ", quote(word_), " is not a number");
     }
     return absl::StrCat(where(), ": the file ends inside its ");
   }
   bool ended() const { return encoding_ != PlyEncoding::kAscii || word_.empty(); }
+
+  /// Bytes that stand behind what was read; blanks at the end of a text do not count.
+  size_t bytes_behind() const {
+    std::string_view rest = bytes_.substr(offset_);
+    if (encoding_ == PlyEncoding::kAscii && take_word(rest).empty()) return 0;
+    return bytes_left();
+  }
 
  private:
   std::optional<double> next_word() {
     std::string_view rest = bytes_.substr(offset_);
     word_ = take_word(rest);
     const size_t word_start = static_cast<size_t>(word_.data() - bytes_.data());
-    if (!word_.empty())
-      line_ += static_cast<size_t>(std::count(bytes_.begin() + offset_, bytes_.begin() + word_start, '\n'));
+    if (!word_.empty()) line_ += count_line_ends(bytes_.substr(offset_, word_start - offset_));
     offset_ = bytes_.size() - rest.size();
-    return parse_number(word_);
+    return parse_number_or_nan(word_);
   }
 
   template <typename Stored>
@@ -79,6 +86,10 @@ class PlyBody {
         return decode<int32_t>();
       case PlyType::kUint32:
         return decode<uint32_t>();
+      case PlyType::kInt64:
+        return decode<int64_t>();
+      case PlyType::kUint64:
+        return decode<uint64_t>();
       case PlyType::kFloat32:
         return decode<float>();
       case PlyType::kFloat64:
@@ -154,54 +165,124 @@ absl::Status read_vertices(PlyBody& body, const PlyElement& element, SurfaceBuil
   return absl::OkStatus();
 }
 
-absl::Status read_faces(PlyBody& body, const PlyElement& element, SurfaceBuilder& builder) {
-  int list_index = find_property(element, "vertex_indices", true);
-  if (list_index < 0) list_index = find_property(element, "vertex_index", true);
-  if (list_index < 0) {
-    return absl::InvalidArgumentError("the PLY header gives element 'face' no list vertex_indices or vertex_index");
+/// The list of vertex indices of an element.
+absl::StatusOr<int> find_indices(const PlyElement& element) {
+  for (const char* name : {"vertex_indices", "vertex_index"}) {
+    if (const int index = find_property(element, name, true); index >= 0) return index;
   }
+  return absl::InvalidArgumentError(
+      absl::StrCat("the PLY header gives element ", quote(element.name), " no list vertex_indices or vertex_index"));
+}
+
+absl::StatusOr<long long> to_index(double item, const std::string& where) {
+  if (std::abs(item) < 1e15 && item == std::floor(item)) return static_cast<long long>(item);
+  return absl::InvalidArgumentError(absl::StrCat(where, ": vertex index ", item, " is not a whole number"));
+}
+
+/// Calls add(indices, where) for the list of vertex indices in each record of an element.
+template <typename Add>
+absl::Status read_lists(PlyBody& body, const PlyElement& element, const Add& add) {
+  const auto list_index = find_indices(element);
+  if (!list_index.ok()) return list_index.status();
   std::vector<double> scalars(element.properties.size());
   std::vector<double> list;
-  std::vector<long long> corners;
   for (unsigned long long n = 0; n < element.count; ++n) {
-    const absl::Status read = read_record(body, element, list_index, scalars, list);
+    const absl::Status read = read_record(body, element, *list_index, scalars, list);
     if (!read.ok()) return read;
-    const std::string where = absl::StrCat("face ", n, " (", body.where(), ")");
-    corners.clear();
-    for (const double item : list) {
-      if (!(std::abs(item) < 1e15) || item != std::floor(item)) {
-        return absl::InvalidArgumentError(absl::StrCat(where, ": vertex index ", item, " is not a whole number"));
-      }
-      corners.push_back(static_cast<long long>(item));
-    }
-    const absl::Status added = builder.add_polygon(corners, where);
+    const absl::Status added = add(list, absl::StrCat(element.name, " ", n, " (", body.where(), ")"));
     if (!added.ok()) return added;
   }
   return absl::OkStatus();
 }
 
-absl::Status pass_over(PlyBody& body, const PlyElement& element) {
+absl::Status read_faces(PlyBody& body, const PlyElement& element, SurfaceBuilder& builder) {
+  std::vector<long long> corners;
+  return read_lists(body, element, [&](const std::vector<double>& list, const std::string& where) -> absl::Status {
+    corners.clear();
+    for (const double item : list) {
+      const auto corner = to_index(item, where);
+      if (!corner.ok()) return corner.status();
+      corners.push_back(*corner);
+    }
+    return builder.add_polygon(corners, where);
+  });
+}
+
+/// True for what ends a strip: -1, or what -1 becomes in a type without a sign.
+bool ends_strip(double item, PlyType type) {
+  if (type == PlyType::kUint32) return item == static_cast<double>(UINT32_MAX);
+  if (type == PlyType::kUint64) return item == static_cast<double>(UINT64_MAX);
+  return item < 0.0;
+}
+
+/// Strips of triangles: each index makes one with the two before it, every other one turned over. A
+/// triangle of which two corners are one only leads the strip on.
+absl::Status read_strips(PlyBody& body, const PlyElement& element, SurfaceBuilder& builder) {
+  const auto list_index = find_indices(element);
+  if (!list_index.ok()) return list_index.status();
+  const PlyType type = element.properties[static_cast<size_t>(*list_index)].type;
+  std::vector<long long> strip;
+  return read_lists(body, element, [&](const std::vector<double>& list, const std::string& where) -> absl::Status {
+    strip.clear();
+    for (const double item : list) {
+      if (ends_strip(item, type)) {
+        strip.clear();
+        continue;
+      }
+      const auto corner = to_index(item, where);
+      if (!corner.ok()) return corner.status();
+      strip.push_back(*corner);
+      const size_t n = strip.size();
+      if (n < 3) continue;
+      const long long a = strip[n - 3], b = strip[n - 2], c = strip[n - 1];
+      if (a == b || b == c || c == a) continue;
+      const bool is_turned = n % 2 == 0;
+      const absl::Status added = builder.add_polygon({is_turned ? b : a, is_turned ? a : b, c}, where);
+      if (!added.ok()) return added;
+    }
+    return absl::OkStatus();
+  });
+}
+
+absl::Status pass_over(PlyBody& body, const PlyElement& element, SurfaceBuilder& builder) {
   std::vector<double> scalars(element.properties.size());
   std::vector<double> unused;
   for (unsigned long long n = 0; n < element.count; ++n) {
     const absl::Status read = read_record(body, element, -1, scalars, unused);
     if (!read.ok()) return read;
   }
+  if (element.count > 0) {
+    builder.add_remark(
+        absl::StrCat(element.count, " of element ", quote(element.name), " passed over: they shape no surface."));
+  }
   return absl::OkStatus();
+}
+
+absl::Status read_element(PlyBody& body, const PlyElement& element, SurfaceBuilder& builder) {
+  if (element.name == "vertex") return read_vertices(body, element, builder);
+  if (element.name == "face") return read_faces(body, element, builder);
+  if (element.name == "tristrips") return read_strips(body, element, builder);
+  return pass_over(body, element, builder);
 }
 
 }  // namespace
 
-absl::StatusOr<SurfaceMesh> parse_ply(std::string_view bytes, const SurfaceLimits& limits) {
+absl::StatusOr<ScannedSurface> parse_ply(std::string_view bytes, const SurfaceLimits& limits) {
+  bytes = skip_byte_order_mark(bytes);
   const auto header = parse_ply_header(bytes);
   if (!header.ok()) return header.status();
   SurfaceBuilder builder(limits);
+  if (header->unknown_lines > 0) {
+    builder.add_remark(absl::StrCat(count_of(header->unknown_lines, "line", "lines"),
+                                    " of the PLY header not known and passed over."));
+  }
   PlyBody body(bytes, *header);
   for (const PlyElement& element : header->elements) {
-    const absl::Status status = element.name == "vertex" ? read_vertices(body, element, builder)
-                                : element.name == "face" ? read_faces(body, element, builder)
-                                                         : pass_over(body, element);
+    const absl::Status status = read_element(body, element, builder);
     if (!status.ok()) return status;
+  }
+  if (const size_t behind = body.bytes_behind(); behind > 0) {
+    builder.add_remark(absl::StrCat(count_of(behind, "byte", "bytes"), " behind the last element passed over."));
   }
   return std::move(builder).build();
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -18,26 +19,51 @@ class SurfaceBuilder {
  public:
   explicit SurfaceBuilder(const SurfaceLimits& limits) : limits_(limits) {}
 
+  /// A vertex. Its coordinates need to be finite only where a face uses it, which build() checks.
   absl::Status add_vertex(const std::array<double, 3>& xyz, const std::string& where);
 
-  /// A polygon, cut into a fan of triangles from its first corner. Corners may name vertices still
-  /// to come; build() checks them.
+  /// A polygon, to be cut into triangles at the end. Corners may name vertices still to come;
+  /// build() checks them. One of fewer than three corners is left out and counted.
   absl::Status add_polygon(const std::vector<long long>& corners, const std::string& where);
+
+  /// A sentence about what of the file is not in the surface.
+  void add_remark(std::string remark) { remarks_.push_back(std::move(remark)); }
 
   long long n_vertices() const { return static_cast<long long>(coordinates_.size() / 3); }
 
-  /// Finishes at the end of the file: checks every corner, and that there is a triangle.
-  absl::StatusOr<SurfaceMesh> build() &&;
+  /// Finishes at the end of the file: checks every corner, and that there is a triangle; cuts
+  /// polygons into triangles and leaves out vertices of no face.
+  absl::StatusOr<ScannedSurface> build() &&;
 
  private:
+  /// A polygon of more than three corners, kept as the fan of its triangles.
+  struct Fan {
+    size_t first_triangle = 0;
+    size_t corners = 0;
+  };
+
+  absl::Status check_corners() const;
+  absl::Status check_used_vertices(const std::vector<bool>& used) const;
+  std::vector<bool> find_used() const;
+  absl::Status cut_polygons(const SurfaceMesh& vertices);
+  void leave_out_unused(const std::vector<bool>& used, SurfaceMesh& mesh);
+
   SurfaceLimits limits_;
   std::vector<double> coordinates_;
   std::vector<std::array<int, 3>> triangles_;
+  std::vector<Fan> fans_;
+  /// The first vertices that are not finite, and where they are.
+  std::vector<std::pair<size_t, std::string>> not_finite_;
+  size_t short_faces_ = 0;
+  std::vector<std::string> remarks_;
 };
 
+/// "1 face", "2 faces".
+std::string count_of(size_t n, const char* singular, const char* plural);
+
 /// The parsers behind read_surface; they leave units and extent to it.
-absl::StatusOr<SurfaceMesh> parse_obj(std::string_view bytes, const SurfaceLimits& limits);
-absl::StatusOr<SurfaceMesh> parse_ply(std::string_view bytes, const SurfaceLimits& limits);
-absl::StatusOr<SurfaceMesh> parse_stl(std::string_view bytes, const SurfaceLimits& limits);
+absl::StatusOr<ScannedSurface> parse_obj(std::string_view bytes, const SurfaceLimits& limits);
+absl::StatusOr<ScannedSurface> parse_ply(std::string_view bytes, const SurfaceLimits& limits);
+absl::StatusOr<ScannedSurface> parse_stl(std::string_view bytes, const SurfaceLimits& limits);
 
 }  // namespace lipofill::geometry

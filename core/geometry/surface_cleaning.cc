@@ -7,6 +7,8 @@
 #include <tuple>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "core/geometry/outer_wall.h"
 #include "core/geometry/surface_topology.h"
 
 namespace lipofill::geometry {
@@ -195,6 +197,17 @@ void make_directions_agree(SurfaceMesh& mesh, std::vector<std::string>& remarks)
   }
 }
 
+/// A scan that was thickened for print, or is hollow, has its skin in the outer wall alone.
+void keep_outer_wall(SurfaceMesh& mesh, std::vector<std::string>& remarks) {
+  const auto shell = find_shell(mesh);
+  if (!shell) return;
+  size_t t = 0;
+  std::erase_if(mesh.triangles, [&](const auto&) { return !shell->is_outer[t++]; });
+  remarks.push_back(absl::StrFormat("The scan is a shell of two walls %.1f mm apart: its inner wall (%s) left out.",
+                                    shell->thickness * 1e3, counted(shell->n_inner, "triangle", "triangles")));
+  drop_specks(mesh, remarks);
+}
+
 void drop_unused_vertices(CleanedSurface& cleaned, const SurfaceMesh& scan) {
   std::vector<int> all(cleaned.mesh.triangles.size());
   for (size_t t = 0; t < all.size(); ++t) all[t] = static_cast<int>(t);
@@ -223,6 +236,7 @@ CleanedSurface clean_surface(const SurfaceMesh& scan) {
   cut_non_manifold_edges(cleaned.mesh, cleaned.remarks);
   drop_specks(cleaned.mesh, cleaned.remarks);
   make_directions_agree(cleaned.mesh, cleaned.remarks);
+  keep_outer_wall(cleaned.mesh, cleaned.remarks);
   drop_unused_vertices(cleaned, scan);
   return cleaned;
 }

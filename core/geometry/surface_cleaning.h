@@ -16,9 +16,10 @@ struct CleanedSurface {
 };
 
 /// Cleans a scan. A speck is a part of less than 2 % of the area of the largest part. At an edge of
-/// more than two triangles the two that continue each other most smoothly stay. The mesh may come
-/// out empty. Deterministic.
-/// Checked by tests/unit/geometry/surface_cleaning_test.cc.
+/// more than two triangles the two that continue each other most smoothly stay. Of a scan that was
+/// thickened for print, or is hollow, the outer wall stays (outer_wall.h). The mesh may come out
+/// empty. Deterministic.
+/// Checked by tests/unit/geometry/surface_cleaning_test.cc and outer_wall_test.cc.
 CleanedSurface clean_surface(const SurfaceMesh& scan);
 
 }  // namespace lipofill::geometry

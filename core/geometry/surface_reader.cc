@@ -9,7 +9,7 @@
 namespace lipofill::geometry {
 namespace {
 
-absl::StatusOr<SurfaceMesh> parse(std::string_view bytes, SurfaceFormat format, const SurfaceLimits& limits) {
+absl::StatusOr<ScannedSurface> parse(std::string_view bytes, SurfaceFormat format, const SurfaceLimits& limits) {
   switch (format) {
     case SurfaceFormat::kObj:
       return parse_obj(bytes, limits);
@@ -36,8 +36,8 @@ absl::Status check_extent(const SurfaceMesh& mesh, double metres_per_unit, const
 
 }  // namespace
 
-absl::StatusOr<SurfaceMesh> read_surface(std::string_view bytes, SurfaceFormat format, double metres_per_unit,
-                                         const SurfaceLimits& limits) {
+absl::StatusOr<ScannedSurface> read_surface(std::string_view bytes, SurfaceFormat format, double metres_per_unit,
+                                            const SurfaceLimits& limits) {
   if (!(metres_per_unit > 0.0) || !std::isfinite(metres_per_unit)) {
     return absl::InvalidArgumentError(absl::StrCat("metres per unit is ", metres_per_unit, ", must be above 0"));
   }
@@ -45,6 +45,9 @@ absl::StatusOr<SurfaceMesh> read_surface(std::string_view bytes, SurfaceFormat f
   if (bytes.size() > limits.max_bytes) {
     return absl::InvalidArgumentError(
         absl::StrCat("the file has ", bytes.size(), " bytes, must be at most ", limits.max_bytes));
+  }
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    return absl::InvalidArgumentError("the file is a text in UTF-16: save it as UTF-8 or plain ASCII");
   }
   auto mesh = parse(bytes, format, limits);
   if (!mesh.ok()) return mesh.status();

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "core/geometry/surface_mesh.h"
@@ -28,16 +29,25 @@ struct SurfaceCheck {
   Eigen::Vector3d extent = Eigen::Vector3d::Zero();  ///< [m]
 };
 
+/// A surface as a file has it, and what of the file is not in it.
+struct ScannedSurface : SurfaceMesh {
+  /// What was passed over, left out or read in spite of a fault, a sentence each, with counts.
+  std::vector<std::string> remarks;
+};
+
 /// Reads a surface from the bytes of a file: OBJ (polygons, texture coordinates and normals
-/// ignored), PLY (ASCII, binary little and big endian), STL (ASCII, binary; equal points are
-/// merged). Polygons are cut into triangles; vertex order is the file's.
+/// ignored), PLY (ASCII, binary little and big endian; faces and triangle strips), STL (ASCII with
+/// any number of solids, binary; equal points are merged). Lines end with LF, CR LF or CR; a byte
+/// order mark of UTF-8 counts for nothing. Polygons are cut into triangles inside them; faces of
+/// fewer than three corners and vertices of no face are left out, the others keep their order.
 /// @param metres_per_unit  0.001 for a file in millimetres
 /// INVALID_ARGUMENT, saying where in the file and what was found there, for a file that is empty,
-/// cut short, of another format, holds numbers that are not finite or indices out of range, has no
+/// cut short, of another format, has faces of vertices that are not finite or not there, has no
 /// triangle, or is outside the limits. Never throws, never reserves more memory than a small
-/// multiple of the file's own size. Checked by tests/unit/geometry/surface_reader_test.cc.
-absl::StatusOr<SurfaceMesh> read_surface(std::string_view bytes, SurfaceFormat format, double metres_per_unit,
-                                         const SurfaceLimits& limits = {});
+/// multiple of the file's own size. Checked by tests/unit/geometry/surface_reader_test.cc and
+/// tests/unit/geometry/surface_kinds_test.cc.
+absl::StatusOr<ScannedSurface> read_surface(std::string_view bytes, SurfaceFormat format, double metres_per_unit,
+                                            const SurfaceLimits& limits = {});
 
 SurfaceCheck check_surface(const SurfaceMesh& mesh);
 

@@ -45,13 +45,8 @@ std::vector<float> look_below(const std::vector<SkinPoint>& points, int n, doubl
   return values;
 }
 
-std::vector<float> select_columns(const Eigen::Matrix3Xd& all, const std::vector<int>& columns) {
-  std::vector<float> values;
-  values.reserve(3 * columns.size());
-  for (const int column : columns) {
-    for (int c = 0; c < 3; ++c) values.push_back(static_cast<float>(kMillimetresPerMetre * all(c, column)));
-  }
-  return values;
+std::vector<double> select_columns(const Eigen::Matrix3Xd& all, const std::vector<int>& columns) {
+  return geometry::to_points_mm(Eigen::Matrix3Xd(all(Eigen::all, columns)));
 }
 
 std::vector<float> select_moved(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
@@ -109,7 +104,7 @@ std::vector<MeshTopology> Simulation::topology() const {
   }
   if (impl.stepper->tissue() != nullptr) {
     const solid::HexMesh& mesh = impl.stepper->tissue()->tissue.mesh();
-    MeshTopology tissue{"tissue", to_floats(mesh.rest_positions, kMillimetresPerMetre), {}, 8};
+    MeshTopology tissue{"tissue", geometry::to_points_mm(mesh.rest_positions), {}, 8};
     for (const auto& hexahedron : mesh.hexahedra) {
       for (const int v : hexahedron) tissue.cells.push_back(static_cast<uint32_t>(v));
     }

@@ -32,7 +32,7 @@ double metres_per_unit(const ScanRecord& scan) {
 
 }  // namespace
 
-absl::StatusOr<geometry::SurfaceMesh> parse_scan(const ScanRecord& scan, std::string_view bytes) {
+absl::StatusOr<geometry::ScannedSurface> parse_scan(const ScanRecord& scan, std::string_view bytes) {
   return geometry::read_surface(bytes, format_of(scan), metres_per_unit(scan));
 }
 

@@ -10,7 +10,7 @@
 namespace lipofill::server {
 
 /// The surface of a scan's bytes, in metres. Errors as those of geometry::read_surface.
-absl::StatusOr<geometry::SurfaceMesh> parse_scan(const ScanRecord& scan, std::string_view bytes);
+absl::StatusOr<geometry::ScannedSurface> parse_scan(const ScanRecord& scan, std::string_view bytes);
 
 /// FAILED_PRECONDITION with a violation of `field` where a scan of the patient is not complete yet,
 /// NOT_FOUND where there is none.

@@ -78,6 +78,22 @@ absl::StatusOr<ModelCache::Model> build(Backend& backend, const std::string& ope
   return model;
 }
 
+/// The model's report, in which what the readers of its scans passed over stands first.
+v1::ModelReport report_on(Backend& backend, const ModelOrder& order, const model::FaceModel& model) {
+  v1::ModelReport report = to_model_report(model);
+  std::vector<std::string> remarks;
+  for (const auto& [scan, prefix] : {std::pair(order.scans.skin, ""), std::pair(order.scans.bone, "Bone: ")}) {
+    if (scan.empty()) continue;
+    const auto record = backend.store.get_scan(order.patient, scan);
+    v1::ScanReport read;
+    if (!record.ok() || !read.ParseFromString(record->report_message)) continue;
+    for (const std::string& remark : read.read_remarks()) remarks.push_back(absl::StrCat(prefix, remark));
+  }
+  remarks.insert(remarks.end(), report.scan_remarks().begin(), report.scan_remarks().end());
+  report.mutable_scan_remarks()->Assign(remarks.begin(), remarks.end());
+  return report;
+}
+
 absl::StatusOr<std::string> build_and_keep(Backend& backend, const std::string& operation, const ModelOrder& order,
                                            const RequestKey& request) {
   const auto model = build(backend, operation, order);
@@ -89,7 +105,7 @@ absl::StatusOr<std::string> build_and_keep(Backend& backend, const std::string& 
   record.bone_scan = order.scans.bone;
   record.content_hash = (*model)->content_hash;
   record.spec_message = with_chosen_sizes(order.message, **model).SerializeAsString();
-  record.report_message = to_model_report(**model).SerializeAsString();
+  record.report_message = report_on(backend, order, **model).SerializeAsString();
   record.create_time_us = now_us();
   const auto kept = backend.store.create_model(record, request);
   if (!kept.ok()) return kept.status();

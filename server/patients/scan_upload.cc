@@ -6,6 +6,7 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
+#include "core/geometry/surface_cleaning.h"
 #include "server/backend/scan_reading.h"
 #include "server/entry/unary.h"
 #include "server/sessions/identifiers.h"
@@ -106,6 +107,14 @@ class UploadStream : public grpc::ServerReadReactor<v1::UploadScanRequest> {
   PatientChild ids_;
   ScanRecord record_;
 };
+
+/// What was found in the file, what of it is not in the surface, and what a model will mend.
+v1::ScanReport describe_scan(const geometry::ScannedSurface& surface) {
+  v1::ScanReport report = to_scan_report(surface, geometry::check_surface(surface));
+  for (const std::string& remark : surface.remarks) report.add_read_remarks(remark);
+  for (const std::string& remark : geometry::clean_surface(surface).remarks) report.add_mending_remarks(remark);
+  return report;
+}
 
 }  // namespace
 
@@ -215,7 +224,7 @@ absl::StatusOr<ScanRecord> ScanUploads::check_whole(const ScanRecord& record) {
   }
   ScanRecord whole = record;
   whole.received_bytes = record.size_bytes;
-  whole.report_message = to_scan_report(*surface, geometry::check_surface(*surface)).SerializeAsString();
+  whole.report_message = describe_scan(*surface).SerializeAsString();
   return whole;
 }
 

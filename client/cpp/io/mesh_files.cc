@@ -2,6 +2,7 @@
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkDoubleArray.h>
 #include <vtkFloatArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -34,8 +35,8 @@ absl::Status check_geometry(const MeshView& mesh) {
   if (mesh.points == nullptr || mesh.cells == nullptr) {
     return absl::DataLossError(absl::StrCat("mesh '", mesh.name, "' lacks its points or cells"));
   }
-  if (mesh.points->type != ElementType::kFloat32 || mesh.points->columns() != 3)
-    return misfit(*mesh.points, "is not (n, 3) float32");
+  if (!mesh.points->has_points() || mesh.points->columns() != 3)
+    return misfit(*mesh.points, "is not (n, 3) float32 or float64");
   const size_t corners = mesh.cells->columns();
   if (mesh.cells->type != ElementType::kUint32 || (corners != 3 && corners != 4 && corners != 8)) {
     return misfit(*mesh.cells, "is not (n, 3 or 4 or 8) uint32");
@@ -78,23 +79,36 @@ vtkSmartPointer<vtkDataArray> vtk_array(const Array& field) {
     case ElementType::kUint8:
       array = copy_values<vtkUnsignedCharArray>(field.uint8s(), field.columns());
       break;
+    case ElementType::kFloat64:
+      array = copy_values<vtkDoubleArray>(field.doubles(), field.columns());
+      break;
   }
   array->SetName(field_name(field).c_str());
   return array;
 }
 
-vtkSmartPointer<vtkPoints> moved_points(const MeshView& mesh) {
-  const auto rest = mesh.points->floats();
-  const auto displacement = std::find_if(mesh.fields.begin(), mesh.fields.end(),
-                                         [](const Array* field) { return field->field() == "displacement"; });
-  auto points = vtkSmartPointer<vtkPoints>::New();
-  points->SetDataTypeToFloat();
-  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points->rows()));
-  auto* values = static_cast<float*>(points->GetVoidPointer(0));
+template <typename Value>
+void move_points(std::span<const Value> rest, const Array* displacement, vtkPoints* points) {
+  auto* values = static_cast<Value*>(points->GetVoidPointer(0));
   std::copy(rest.begin(), rest.end(), values);
-  if (displacement != mesh.fields.end()) {
-    const auto moved = (*displacement)->floats();
-    for (size_t i = 0; i < rest.size(); ++i) values[i] += moved[i];
+  if (displacement == nullptr) return;
+  const auto moved = displacement->floats();
+  for (size_t i = 0; i < rest.size(); ++i) values[i] += moved[i];
+}
+
+/// In the precision in which they came.
+vtkSmartPointer<vtkPoints> moved_points(const MeshView& mesh) {
+  const auto found = std::find_if(mesh.fields.begin(), mesh.fields.end(),
+                                  [](const Array* field) { return field->field() == "displacement"; });
+  const Array* displacement = found == mesh.fields.end() ? nullptr : *found;
+  const bool is_double = mesh.points->type == ElementType::kFloat64;
+  auto points = vtkSmartPointer<vtkPoints>::New();
+  points->SetDataType(is_double ? VTK_DOUBLE : VTK_FLOAT);
+  points->SetNumberOfPoints(static_cast<vtkIdType>(mesh.points->rows()));
+  if (is_double) {
+    move_points(mesh.points->doubles(), displacement, points);
+  } else {
+    move_points(mesh.points->floats(), displacement, points);
   }
   return points;
 }

@@ -15,7 +15,7 @@ namespace lipofill::client {
 /// One mesh at rest with fields on it. Points to the arrays it was made from.
 struct MeshView {
   std::string name;               ///< "skin", "scan", "film/<film>", "tissue"
-  const Array* points = nullptr;  ///< (n, 3) float32 [mm], at rest
+  const Array* points = nullptr;  ///< (n, 3) float32 or float64 [mm], at rest
   const Array* cells = nullptr;   ///< (n, 3 | 4 | 8) uint32
   std::vector<const Array*> fields;
 };

@@ -13,8 +13,25 @@
 #include "client/cpp/io/vtk_messages.h"
 
 namespace lipofill::client {
+namespace {
 
-absl::StatusOr<Surface> read_surface(const std::filesystem::path& file, const std::vector<std::string>& fields) {
+/// Pictures are drawn in single precision: a surface far from the origin is moved there.
+void move_near_origin(vtkPolyData* surface) {
+  if (surface->GetPoints()->GetDataType() != VTK_DOUBLE) return;
+  double centre[3];
+  surface->GetCenter(centre);
+  vtkNew<vtkPoints> near;
+  near->SetNumberOfPoints(surface->GetNumberOfPoints());
+  for (vtkIdType i = 0; i < surface->GetNumberOfPoints(); ++i) {
+    const double* point = surface->GetPoint(i);
+    near->SetPoint(i, point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]);
+  }
+  surface->SetPoints(near);
+}
+
+}  // namespace
+
+absl::StatusOr<Surface> read_plain_surface(const std::filesystem::path& file) {
   const VtkMessages messages;
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(file.c_str());
@@ -23,6 +40,14 @@ absl::StatusOr<Surface> read_surface(const std::filesystem::path& file, const st
   if (!messages.error().empty() || surface->GetNumberOfPoints() == 0) {
     return absl::InvalidArgumentError(absl::StrCat("cannot read the mesh ", file.string(), " ", messages.error()));
   }
+  move_near_origin(surface);
+  return surface;
+}
+
+absl::StatusOr<Surface> read_surface(const std::filesystem::path& file, const std::vector<std::string>& fields) {
+  auto read = read_plain_surface(file);
+  if (!read.ok()) return read.status();
+  const Surface& surface = *read;
   vtkDataArray* displacement = surface->GetPointData()->GetArray(kDisplacement);
   if (displacement == nullptr || displacement->GetNumberOfComponents() != 3) {
     return absl::InvalidArgumentError(absl::StrCat(file.string(), " has no point field ", kDisplacement));

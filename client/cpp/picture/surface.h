@@ -18,8 +18,14 @@ inline constexpr char kDisplacementLength[] = "displacement_length_mm";
 inline constexpr char kPressure[] = "pressure_pa";
 inline constexpr char kThickness[] = "thickness_mm";
 
-/// Reads a .vtp. INVALID_ARGUMENT, naming the file, for one that cannot be read, has no points, or
-/// lacks the point field "displacement_mm" of three components or one of `fields`.
+/// Reads a .vtp with any fields or none. One in double precision, which lies far from the origin,
+/// is moved there: pictures are drawn in single precision. INVALID_ARGUMENT, naming the file, for
+/// one that cannot be read or has no points.
+absl::StatusOr<Surface> read_plain_surface(const std::filesystem::path& file);
+
+/// Reads a .vtp in the same way. INVALID_ARGUMENT, naming the file, for one that cannot be read,
+/// has no points, or lacks the point field "displacement_mm" of three components or one of
+/// `fields`.
 absl::StatusOr<Surface> read_surface(const std::filesystem::path& file, const std::vector<std::string>& fields);
 
 /// Adds normals for smooth shading; points and their order stay.

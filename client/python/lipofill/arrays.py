@@ -12,7 +12,7 @@ import numpy.typing as npt
 from lipofill.errors import DataLossError
 from lipofill.v1 import frame_service_pb2 as pb
 
-_DTYPES = {pb.FLOAT32: "<f4", pb.UINT32: "<u4", pb.UINT8: "u1", pb.UINT16: "<u2"}
+_DTYPES = {pb.FLOAT32: "<f4", pb.FLOAT64: "<f8", pb.UINT32: "<u4", pb.UINT8: "u1", pb.UINT16: "<u2"}
 _LOCATIONS = {pb.MESH: "mesh", pb.POINT: "point", pb.CELL: "cell"}
 _MAX_BYTES = 4 << 30
 
@@ -31,7 +31,8 @@ class Array:
         ``"point"`` or ``"cell"`` for fields, ``"mesh"`` for the mesh itself: ``points`` (n, 3) and
         ``cells`` (n, 3, 4 or 8).
     values : ndarray, read-only
-        float32, uint32 or uint8, in the shape the daemon states. Over the bytes of the message,
+        float32, uint32 or uint8, and float64 for points far from the origin, in the shape the
+        daemon states. Over the bytes of the message,
         without a copy, where the array came in one piece (up to 1 MiB) and not as codes.
     max_error : float
         How far a value may be from what the daemon computed, in `unit`: 0 but for arrays that came

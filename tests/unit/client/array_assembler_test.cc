@@ -26,6 +26,19 @@ v1::ArraySlice slice(const std::string& name, uint64_t rows, uint64_t offset, co
   return result;
 }
 
+TEST(ArrayAssembler, TakesPointsInDoublePrecision) {
+  v1::ArraySlice points = slice("scan.points", 1, 0, {});
+  points.set_type(v1::FLOAT64);
+  const std::vector<double> values = {5e8 + 0.001, 2, 3};
+  points.set_data(values.data(), 3 * sizeof(double));
+  ArrayAssembler assembler;
+  ASSERT_TRUE(assembler.add(points).ok());
+  const auto arrays = assembler.take();
+  ASSERT_TRUE(arrays.ok()) << arrays.status();
+  EXPECT_TRUE((*arrays)[0].has_points());
+  EXPECT_EQ((*arrays)[0].to_doubles(), values);
+}
+
 TEST(ArrayAssembler, JoinsSlicesAndKeepsTheOrder) {
   ArrayAssembler assembler;
   ASSERT_TRUE(assembler.add(slice("film/a.b.displacement", 2, 0, {1, 2, 3, 4})).ok());

@@ -48,6 +48,22 @@ TEST_F(MeshFilesTest, SurfaceReadsBackMovedWithItsFields) {
   EXPECT_EQ(surface->GetCellData()->GetArray("wet")->GetComponent(1, 0), 1.0);
 }
 
+TEST_F(MeshFilesTest, KeepsThePrecisionOfPointsFarFromTheOrigin) {
+  std::vector<Array> mesh = square_mesh("scan");
+  mesh[0] = make_array<double>("scan.points", "mm", ArrayLocation::kMesh, ElementType::kFloat64, {4, 3},
+                               {5e8, 0, 0, 5e8 + 1, 0, 0, 5e8 + 1, 1, 0, 5e8, 1, 0});
+  const std::vector<Array> fields = {
+      float_field("scan.displacement", "mm", ArrayLocation::kPoint, 4, 3, {0.0625f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0})};
+  const auto views = mesh_views(mesh, fields);
+  ASSERT_TRUE(views.ok()) << views.status();
+  ASSERT_TRUE(write_mesh(folder_ / "scan.vtp", views->front()).ok());
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName((folder_ / "scan.vtp").c_str());
+  reader->Update();
+  EXPECT_EQ(reader->GetOutput()->GetPoint(0)[0], 5e8 + 0.0625);
+  EXPECT_EQ(reader->GetOutput()->GetPoint(2)[0], 5e8 + 1.0);
+}
+
 TEST_F(MeshFilesTest, HexahedraReadBack) {
   const std::vector<Array> mesh = cube_mesh();
   const auto views = mesh_views(mesh, {});

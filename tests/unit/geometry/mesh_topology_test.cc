@@ -33,7 +33,7 @@ TEST(MeshTopology, TheSkinIsTheOutermostLevel) {
   EXPECT_EQ(skin.kind, 4);
   EXPECT_EQ(skin.n_points(), 6);
   EXPECT_THAT(skin.cells, ElementsAre(0, 1, 4, 3, 1, 2, 5, 4));
-  EXPECT_EQ(skin.points_mm[3 * 5], 2000.0f);
+  EXPECT_EQ(skin.points_mm[3 * 5], 2000.0);
   EXPECT_EQ(skin.points_mm[3 * 5 + 1], 1000.0f);
 }
 

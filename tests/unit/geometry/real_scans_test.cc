@@ -12,9 +12,12 @@
 #include <sstream>
 
 #include "core/geometry/face_geometry.h"
+#include "core/geometry/surface_cleaning.h"
 #include "core/geometry/surface_distance.h"
 #include "core/geometry/surface_reader.h"
+#include "core/geometry/surface_topology.h"
 #include "tests/unit/geometry/jaw_angle_region.h"
+#include "tests/unit/geometry/test_surfaces.h"
 
 namespace lipofill::geometry {
 namespace {
@@ -120,6 +123,54 @@ INSTANTIATE_TEST_SUITE_P(
                            "landmarks"},
                       Face{"james", kReal, "james_face.obj", "james_face.landmarks.json", "landmarks"}),
     [](const auto& test) { return std::string(test.param.name); });
+
+/// A real face as it is, and the same thickened inwards by 2 mm, or moved far from the origin.
+class ChangedScans : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(std::filesystem::path(kReal) / "lps_patient_target.obj"))
+      GTEST_SKIP() << "no real scans in " << kReal;
+    region_ =
+        make_region({"target", kReal, "lps_patient_target.obj", "lps_patient_target.landmarks.json", "landmarks"});
+  }
+
+  static LayeredGrid build(const ScanRegionSpec& region, std::vector<std::string>* remarks = nullptr) {
+    FaceGeometrySpec spec;
+    spec.region = region;
+    spec.n_xi = spec.n_eta = 24;
+    spec.layers = {{ScalarField::constant(1.8e-3), 1}};
+    const auto geometry = build_face_geometry(spec, nullptr);
+    EXPECT_TRUE(geometry.ok()) << geometry.status();
+    if (geometry.ok() && remarks != nullptr) *remarks = geometry->scan_remarks;
+    return geometry.ok() ? geometry->grid : LayeredGrid{};
+  }
+
+  ScanRegionSpec region_;
+};
+
+TEST_F(ChangedScans, OneThickenedForPrintGivesTheModelOfItsOuterWall) {
+  const LayeredGrid plain = build(region_);
+  const SurfaceMesh scan = clean_surface(region_.scan).mesh;
+  SurfaceMesh inner = scan;
+  inner.points -= 2e-3 * compute_vertex_normals(scan);
+  for (auto& triangle : inner.triangles) std::swap(triangle[1], triangle[2]);
+  region_.scan = put_together(scan, inner);
+  std::vector<std::string> remarks;
+  const LayeredGrid thickened = build(region_, &remarks);
+  EXPECT_THAT(remarks, ::testing::Contains(::testing::HasSubstr("shell of two walls 2.0 mm apart")));
+  ASSERT_EQ(thickened.nodes.cols(), plain.nodes.cols());
+  EXPECT_LT((thickened.nodes - plain.nodes).colwise().norm().maxCoeff(), 1e-5);
+}
+
+TEST_F(ChangedScans, FarFromTheOriginTheModelIsTheSame) {
+  const LayeredGrid plain = build(region_);
+  const Eigen::Vector3d far(4e5, -3e5, 1e4);
+  region_.scan.points.colwise() += far;
+  for (auto& [name, position] : region_.landmarks) position += far;
+  const LayeredGrid moved = build(region_);
+  ASSERT_EQ(moved.nodes.cols(), plain.nodes.cols());
+  EXPECT_LT(((moved.nodes.colwise() - far) - plain.nodes).colwise().norm().maxCoeff(), 1e-7);
+}
 
 /// The mouth bag of lps_head lies 20 mm under the cheek; lps_patient_target is the same face
 /// without it, at most 0.75 mm away.

@@ -142,7 +142,7 @@ TEST(SurfaceReader, ReadsObjCornersOfEveryKind) {
   EXPECT_DOUBLE_EQ(mesh->points(1, 2), 0.1);
 }
 
-TEST(SurfaceReader, CutsPolygonsIntoFans) {
+TEST(SurfaceReader, CutsConvexPolygonsIntoFans) {
   const auto mesh =
       read_surface("v 0 0 0\nv 50 0 0\nv 60 40 0\nv 25 70 0\nv -10 40 0\nf 1 2 3 4 5\n", SurfaceFormat::kObj, 1e-3);
   ASSERT_TRUE(mesh.ok()) << mesh.status();
@@ -178,16 +178,17 @@ TEST(SurfaceReader, SaysWhatIsWrongAndWhere) {
       {SurfaceFormat::kPly, "", "empty"},
       {SurfaceFormat::kStl, "", "empty"},
       {SurfaceFormat::kObj, "v 0 0 0\n", "no face"},
-      {SurfaceFormat::kObj, "v 0 nan 0\n", "line 1: vertex coordinate 'nan'"},
-      {SurfaceFormat::kObj, "v 0 1e999 0\n", "1e999"},
-      {SurfaceFormat::kObj, "v 0 inf 0\n", "inf"},
+      {SurfaceFormat::kObj, three + "v 0 nan 0\nf 1 2 4\n", "line 4: a face has a corner at this vertex"},
+      {SurfaceFormat::kObj, three + "v 0 1e999 0\nf 1 2 4\n", "coordinate inf is not a finite number"},
+      {SurfaceFormat::kObj, "v 0 5mm 0\n", "line 1: vertex coordinate '5mm'"},
+      {SurfaceFormat::kObj, three, "3 vertices and no face"},
       {SurfaceFormat::kObj, "v 0 0\n", "line 1: vertex coordinate ''"},
       {SurfaceFormat::kObj, three + "f 1 2 9\n", "must be in [0, 3)"},
       {SurfaceFormat::kObj, three + "f 1 2 0\n", "line 4: face corner '0'"},
       {SurfaceFormat::kObj, three + "f 1 2 -4\n", "line 4: face corner '-4'"},
       {SurfaceFormat::kObj, three + "f 1 2 99999999999999999999\n", "line 4"},
       {SurfaceFormat::kObj, three + "f 1 2 4294967297\n", "line 4"},
-      {SurfaceFormat::kObj, three + "f 1 2\n", "2 corners"},
+      {SurfaceFormat::kObj, three + "f 1 2\n", "only 1 face of fewer than 3 corners"},
       {SurfaceFormat::kObj, three + "f 1 2 x\n", "'x'"},
       {SurfaceFormat::kObj, ply + "element vertex 3\n", "line 1: 'ply' is no statement"},
       {SurfaceFormat::kObj,
@@ -207,7 +208,8 @@ TEST(SurfaceReader, SaysWhatIsWrongAndWhere) {
       {SurfaceFormat::kPly, ply + "element vertex 1\nproperty quad x\n", "'quad'"},
       {SurfaceFormat::kPly, ply + "element vertex 1\nproperty list float int x\n", "'float'"},
       {SurfaceFormat::kPly, ply + "element vertex 1\nproperty float x\nend_header\n0 0 0\n", "x, y and z"},
-      {SurfaceFormat::kPly, ply + "element vertex 1\n" + xyz + face + "0 0 nan\n3 0 0 0\n", "'nan'"},
+      {SurfaceFormat::kPly, ply + "element vertex 1\n" + xyz + face + "0 0 nan\n3 0 0 0\n", "coordinate nan"},
+      {SurfaceFormat::kPly, ply + "element vertex 1\n" + xyz + face + "0 0 x\n3 0 0 0\n", "'x' is not a number"},
       {SurfaceFormat::kPly, ply + "element vertex 1\n" + xyz + face + "0 0 0\n3 0 0 7\n", "vertex 7"},
       {SurfaceFormat::kPly, ply + "element vertex 1\n" + xyz + face + "0 0 0\n3 0 0 -1\n", "vertex -1"},
       {SurfaceFormat::kPly, ply + "element vertex 1\n" + xyz + face + "0 0 0\n4000000 0 0 0\n", "list of 4e+06 items"},

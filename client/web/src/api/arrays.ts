@@ -14,13 +14,14 @@ export interface WireArray {
   boxMax: number[];
 }
 
-export type Typed = Float32Array | Uint32Array | Uint16Array | Uint8Array;
+export type Typed = Float32Array | Float64Array | Uint32Array | Uint16Array | Uint8Array;
 
 /** What a page can hold of one array; more is an error, not a crash. */
 const mostBytes = 1 << 30;
 
 const sizes: Partial<Record<ArrayType, number>> = {
   [ArrayType.FLOAT32]: 4,
+  [ArrayType.FLOAT64]: 8,
   [ArrayType.UINT32]: 4,
   [ArrayType.UINT16]: 2,
   [ArrayType.UINT8]: 1,
@@ -47,6 +48,8 @@ export function view(array: WireArray): Typed {
   switch (array.type) {
     case ArrayType.FLOAT32:
       return new Float32Array(bytes.buffer as ArrayBuffer, bytes.byteOffset, n);
+    case ArrayType.FLOAT64:
+      return new Float64Array(bytes.buffer as ArrayBuffer, bytes.byteOffset, n);
     case ArrayType.UINT32:
       return new Uint32Array(bytes.buffer as ArrayBuffer, bytes.byteOffset, n);
     case ArrayType.UINT16:

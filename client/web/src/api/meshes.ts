@@ -12,6 +12,12 @@ export interface Mesh {
   corners: number;
 }
 
+/** Points far from the origin come in double precision; the scene draws in single precision. */
+function pointsOf(array: WireArray): Float32Array {
+  const values = view(array);
+  return values instanceof Float32Array ? values : Float32Array.from(values);
+}
+
 export function meshesOf(arrays: Map<string, WireArray>): Map<string, Mesh> {
   const meshes = new Map<string, Mesh>();
   for (const [key, points] of arrays) {
@@ -21,7 +27,7 @@ export function meshesOf(arrays: Map<string, WireArray>): Map<string, Mesh> {
     if (cells === undefined) throw new Error(`the mesh ${name} has points but no cells`);
     const mesh = {
       name,
-      points: view(points) as Float32Array,
+      points: pointsOf(points),
       cells: view(cells) as Uint32Array,
       corners: cells.shape[1],
     };

@@ -6,7 +6,8 @@ import { ScanUnit } from "@wire/plan_pb";
 import { patients as calls } from "../api/client";
 import { landmarkHints, landmarkNames, readable } from "../plan/anatomy";
 import { openSample, pickScan, takeLandmarks, takePlan, uploadFace } from "../plan/actions";
-import { writeLandmarks } from "../plan/landmarks";
+import { writeMarkups } from "../plan/landmark_files";
+import { pointOf, writeLandmarks } from "../plan/landmarks";
 import { parsePlan } from "../plan/plan_file";
 import { editPlan, patient, plan, region, scan } from "../plan/state";
 import { tell } from "../activity";
@@ -113,10 +114,10 @@ function Landmarks() {
       <div class="row">
         <FileButton
           label="From file…"
-          accept=".json"
+          accept=".json,.fcsv,.pp,.csv,.tsv,.txt"
           onFiles={async ([file]) => {
             try {
-              takeLandmarks(await file.text());
+              takeLandmarks(await file.text(), undefined, file.name);
             } catch (error) {
               tell(error);
             }
@@ -129,6 +130,17 @@ function Landmarks() {
           onClick={() => save("landmarks.json", writeLandmarks(points, region.value?.axes))}
         >
           Save
+        </button>
+        <button
+          type="button"
+          class="button"
+          title="Markups that 3D Slicer opens, in LPS"
+          disabled={Object.keys(points).length === 0}
+          onClick={() =>
+            save("landmarks.mrk.json", writeMarkups(Object.entries(points).map(([name, at]) => [name, pointOf(at)])))
+          }
+        >
+          Save for Slicer
         </button>
       </div>
       <ul class="landmarks">

@@ -25,7 +25,7 @@ import {
   setModel,
   violations,
 } from "./state";
-import { attempt } from "../activity";
+import { attempt, notice } from "../activity";
 import { toPlanFields } from "./violations";
 
 /** The patient of this page; made up when there is none yet. */
@@ -72,8 +72,9 @@ export async function uploadFace(fileName: string, content: ArrayBuffer, unit: S
   });
 }
 
-export function takeLandmarks(text: string, unit = scanFile.value.unit): void {
-  const { points, axes } = parseLandmarks(text, unit);
+export function takeLandmarks(text: string, unit = scanFile.value.unit, fileName?: string): void {
+  const { points, axes, remarks = [] } = parseLandmarks(text, unit, fileName);
+  if (remarks.length > 0) notice.value = remarks.join(" ");
   editPlan(({ model: spec }) => {
     if (spec?.geometry.case !== "scanRegion") return;
     spec.geometry.value.landmarksMm = points;

@@ -10,10 +10,21 @@ import {
 } from "@wire/geometry_pb";
 import type { Point } from "../scene/surface_geometry";
 import { ScanUnit } from "@wire/plan_pb";
+import {
+  parseFcsv,
+  parseMarkups,
+  parsePickedPoints,
+  parseTable,
+  type LandmarkList,
+  type Markup,
+} from "./landmark_files";
+import { understandName } from "./landmark_names";
 
 export interface Landmarks {
   points: Record<string, Vector3>;
   axes?: HeadAxes;
+  /** what was made of the file, a sentence each */
+  remarks?: string[];
 }
 
 export function vectorOf(point: ArrayLike<number>): Vector3 {
@@ -33,31 +44,70 @@ function readPoint(value: unknown, what: string): Point {
   throw new Error(`${what} is ${JSON.stringify(value)}, must be three numbers`);
 }
 
-/**
- * The JSON of a landmarks file as `lipofill run` takes it: an object "landmarks" of name to [x, y,
- * z], optionally "axes".
- */
-export function parseLandmarks(text: string, unit: ScanUnit): Landmarks {
-  const document = JSON.parse(text) as { landmarks?: Record<string, unknown>; axes?: Record<string, unknown> };
-  if (
-    typeof document !== "object" ||
-    document === null ||
-    typeof document.landmarks !== "object" ||
-    document.landmarks === null
-  ) {
+interface OwnDocument {
+  landmarks?: unknown;
+  axes?: Record<string, unknown>;
+  units?: unknown;
+  markups?: unknown;
+}
+
+function unitOf(document: OwnDocument, unit: ScanUnit): number {
+  if (document.units === undefined) return millimetresPer(unit);
+  const factor = { mm: 1, cm: 10, m: 1000 }[document.units as string];
+  if (factor === undefined) throw new Error(`units is ${JSON.stringify(document.units)}, must be "mm", "cm" or "m"`);
+  return factor;
+}
+
+/** The project's own JSON. In it the names of the file stay beside those they are understood as. */
+function readOwn(document: OwnDocument, unit: ScanUnit): Landmarks {
+  if (typeof document.landmarks !== "object" || document.landmarks === null)
     throw new Error('this file has no object "landmarks"');
+  const factor = unitOf(document, unit);
+  const points: Record<string, Vector3> = {};
+  for (const [name, value] of Object.entries(document.landmarks))
+    points[name] = vectorOf(readPoint(value, `landmarks.${name}`).map((v) => v * factor));
+  for (const name of Object.keys(points)) {
+    const understood = understandName(name);
+    if (understood !== undefined) points[understood] ??= points[name];
   }
-  const factor = millimetresPer(unit);
-  const points = Object.fromEntries(
-    Object.entries(document.landmarks).map(([name, value]) => [
-      name,
-      vectorOf(readPoint(value, `landmarks.${name}`).map((v) => v * factor)),
-    ]),
-  );
   const { axes } = document;
   if (axes === undefined) return { points };
   const [left, up, forward] = ["left", "up", "forward"].map((name) => vectorOf(readPoint(axes[name], `axes.${name}`)));
   return { points, axes: create(HeadAxesSchema, { left, up, forward }) };
+}
+
+/** Landmarks by the daemon's names, from a list in whatever names. */
+function takeList(list: LandmarkList, unit: ScanUnit): Landmarks {
+  const factor = list.millimetresPerUnit ?? millimetresPer(unit);
+  const points: Record<string, Vector3> = {};
+  for (const [given, at] of list.points) {
+    const name = understandName(given) ?? given;
+    if (points[name] !== undefined) throw new Error(`the landmark ${name} is there twice, once as ${given}`);
+    points[name] = vectorOf(at.map((v) => v * factor));
+  }
+  if (list.points.length === 0) throw new Error("this file has no landmark");
+  const unknown = list.points.filter(([given]) => understandName(given) === undefined).length;
+  const remarks = [
+    ...(list.wasRas ? ["The landmarks are in RAS and were turned to LPS."] : []),
+    ...(unknown > 0 ? [`${unknown} of the names are not known as landmarks and stay as they are.`] : []),
+  ];
+  return { points, remarks };
+}
+
+/**
+ * A landmarks file as `lipofill run` takes it: the project's own JSON (an object "landmarks" of
+ * name to [x, y, z], optionally "axes" and "units"), or, by the ending of its name, a file of 3D
+ * Slicer (.mrk.json, .fcsv), MeshLab (.pp) or a table (.csv, .tsv, .txt).
+ */
+export function parseLandmarks(text: string, unit: ScanUnit, fileName = "landmarks.json"): Landmarks {
+  const ending = fileName.slice(fileName.lastIndexOf(".")).toLowerCase();
+  if (ending === ".fcsv") return takeList(parseFcsv(text), unit);
+  if (ending === ".pp") return takeList(parsePickedPoints(text), unit);
+  if ([".csv", ".tsv", ".txt"].includes(ending)) return takeList(parseTable(text), unit);
+  const document = JSON.parse(text.replace(/^\uFEFF/, "")) as OwnDocument | null;
+  if (typeof document !== "object" || document === null) throw new Error('this file has no object "landmarks"');
+  if (Array.isArray(document.markups)) return takeList(parseMarkups(document.markups as Markup[]), unit);
+  return readOwn(document, unit);
 }
 
 export function writeLandmarks(points: Record<string, Vector3>, axes: HeadAxes | undefined): string {

@@ -119,6 +119,18 @@ TEST(FrameEncoding, CutsLargeArraysAndLosesNoByte) {
   EXPECT_EQ(std::memcmp(bytes.data(), frame.fields[0].values.data(), bytes.size()), 0);
 }
 
+TEST(FrameEncoding, PointsFarFromTheOriginComeInDoublePrecision) {
+  Topology topology;
+  topology.meshes.push_back({"skin", {-1024, 0, 0.1, 1, 0, 0, 0, 1, 0}, {0, 1, 2}, 3});
+  topology.meshes.push_back({"scan", {5e8 + 0.001, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}, 3});
+  const v1::MeshSlice whole = to_whole_meshes(topology, {"skin", "scan"});
+  EXPECT_EQ(whole.arrays(0).type(), v1::FLOAT32);
+  EXPECT_EQ(whole.arrays(0).data().size(), 9 * sizeof(float));
+  ASSERT_EQ(whole.arrays(2).type(), v1::FLOAT64);
+  ASSERT_EQ(whole.arrays(2).data().size(), 9 * sizeof(double));
+  EXPECT_EQ(std::memcmp(whole.arrays(2).data().data(), topology.meshes[1].points_mm.data(), 9 * sizeof(double)), 0);
+}
+
 TEST(FrameEncoding, HashesMeshesByContent) {
   Topology topology;
   topology.meshes.push_back({"skin", {0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2}, 3});

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
@@ -22,14 +23,79 @@ bool is_list(absl::string_view value) {
   return absl::AsciiStrToUpper(value.substr(0, 4)) == "LIST";
 }
 
-/// Puts a line's field into the text. Returns whether the line names the voxels' files.
-bool take_line(absl::string_view line, HeaderDialect dialect, HeaderText* text) {
-  const size_t middle = line.find_first_of(dialect == HeaderDialect::kNrrd ? ":" : "=:");
-  if (middle == absl::string_view::npos || line.front() == '#') return false;
-  if (dialect == HeaderDialect::kNrrd && line.substr(middle, 2) == ":=") return false;
+/// The fields of teem's NRRD, in every spelling (nrrd/enumsNrrd.c); others are refused, as a field
+/// with a slip of the pen would move the head without a word.
+bool is_nrrd_field(const std::string& key) {
+  static const std::set<std::string> fields = {"content",
+                                               "number",
+                                               "type",
+                                               "block size",
+                                               "blocksize",
+                                               "dimension",
+                                               "space",
+                                               "sizes",
+                                               "spacings",
+                                               "space dimension",
+                                               "spacedimension",
+                                               "thicknesses",
+                                               "axis mins",
+                                               "axismins",
+                                               "axis maxs",
+                                               "axismaxs",
+                                               "space directions",
+                                               "spacedirections",
+                                               "centers",
+                                               "centerings",
+                                               "kinds",
+                                               "labels",
+                                               "units",
+                                               "min",
+                                               "max",
+                                               "old min",
+                                               "oldmin",
+                                               "old max",
+                                               "oldmax",
+                                               "endian",
+                                               "encoding",
+                                               "line skip",
+                                               "lineskip",
+                                               "byte skip",
+                                               "byteskip",
+                                               "sample units",
+                                               "sampleunits",
+                                               "space units",
+                                               "spaceunits",
+                                               "space origin",
+                                               "spaceorigin",
+                                               "data file",
+                                               "datafile",
+                                               "measurement frame",
+                                               "measurementframe"};
+  return fields.count(key) > 0;
+}
+
+/// The beginning of a line, for a message.
+std::string as_shown(absl::string_view line) {
+  std::string shown(line.substr(0, 60));
+  for (char& c : shown) {
+    if (!absl::ascii_isprint(static_cast<unsigned char>(c))) c = '?';
+  }
+  return shown;
+}
+
+enum class Line { kField, kFiles, kNote, kWrong };
+
+/// Puts a line's field into the text, and says what the line was.
+Line take_line(absl::string_view line, HeaderDialect dialect, HeaderText* text) {
+  const bool is_nrrd = dialect == HeaderDialect::kNrrd;
+  if (line.front() == '#') return Line::kNote;
+  const size_t middle = line.find_first_of(is_nrrd ? ":" : "=:");
+  if (middle == absl::string_view::npos) return is_nrrd ? Line::kWrong : Line::kNote;
+  if (is_nrrd && line.substr(middle, 2) == ":=") return Line::kNote;
   const std::string key = absl::AsciiStrToLower(absl::StripAsciiWhitespace(line.substr(0, middle)));
+  if (is_nrrd && !is_nrrd_field(key)) return Line::kWrong;
   text->values[key] = std::string(absl::StripAsciiWhitespace(line.substr(middle + 1)));
-  return key == "elementdatafile" || key == "data file" || key == "datafile";
+  return key == "elementdatafile" || key == "data file" || key == "datafile" ? Line::kFiles : Line::kField;
 }
 
 /// Reads the line that begins at `*begin` and moves it behind its end.
@@ -113,7 +179,11 @@ absl::StatusOr<HeaderText> read_header_text(const std::filesystem::path& file, H
       if (!stripped.empty()) text.files.emplace_back(stripped);
     } else if (stripped.empty()) {
       if (dialect == HeaderDialect::kNrrd) return text;
-    } else if (take_line(stripped, dialect, &text)) {
+    } else if (dialect == HeaderDialect::kMetaImage || !is_first) {
+      const Line what = take_line(stripped, dialect, &text);
+      if (what == Line::kWrong)
+        return bad_volume(file, absl::StrCat("has the line \"", as_shown(stripped), "\", which is no field of a NRRD"));
+      if (what != Line::kFiles) continue;
       in_list = is_list(text.first_of({"elementdatafile", "data file", "datafile"}));
       if (dialect == HeaderDialect::kMetaImage && !in_list) return text;
     }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "absl/strings/ascii.h"
@@ -32,6 +33,18 @@ std::optional<std::array<double, 3>> signs_to_lps(std::string space) {
   if (space == "right-anterior-superior" || space == "ras") return std::array<double, 3>{-1, -1, 1};
   if (space == "left-anterior-superior" || space == "las") return std::array<double, 3>{1, -1, 1};
   return std::nullopt;
+}
+
+/// Spaces that name axes of a scanner or none at all.
+bool is_other_space(const std::string& space) {
+  static const std::set<std::string> spaces = {"",
+                                               "scanner-xyz",
+                                               "scanner-xyz-time",
+                                               "3d-right-handed",
+                                               "3d-left-handed",
+                                               "3d-right-handed-time",
+                                               "3d-left-handed-time"};
+  return spaces.count(space) > 0;
 }
 
 /// Millimetres in a unit; none for a unit that is not known, which millimetres then stand for.
@@ -109,7 +122,7 @@ absl::Status set_spacings(const std::filesystem::path& file, const HeaderText& t
     const double extent = (*maxs)[a] - (*mins)[a];
     double spacing = (*spacings)[a];
     if (std::isnan(spacing) && !std::isnan(extent) && steps > 0.0) spacing = extent / steps;
-    const bool is_placed = !std::isnan((*mins)[a]) && !text.has("space origin");
+    const bool is_placed = !std::isnan((*mins)[a]) && text.first_of({"space origin", "spaceorigin"}).empty();
     if (std::isnan(spacing)) spacing = 1.0;
     axis.direction = std::vector<double>{spacing};
     if (is_placed) axis.origin = (*mins)[a] + (nodes ? 0.0 : 0.5 * spacing);
@@ -119,7 +132,7 @@ absl::Status set_spacings(const std::filesystem::path& file, const HeaderText& t
 }
 
 absl::Status set_directions(const std::filesystem::path& file, const HeaderText& text, std::vector<Axis>* axes) {
-  const std::string value = text.value("space directions");
+  const std::string value = text.first_of({"space directions", "spacedirections"});
   const auto directions = parse_directions(absl::AsciiStrToLower(value));
   if (!directions || directions->size() != axes->size()) {
     return bad_volume(file,
@@ -161,16 +174,19 @@ double scale_of(const std::string& unit, VolumeHeader* header) {
 
 absl::Status set_affine(const std::filesystem::path& file, const HeaderText& text, const std::vector<Axis>& axes,
                         VolumeHeader* header) {
-  const std::string origin_text = text.value("space origin");
+  const std::string origin_text = text.first_of({"space origin", "spaceorigin"});
   const bool has_origin = !origin_text.empty() && !absl::StrContains(absl::AsciiStrToLower(origin_text), "n");
   const auto origin = parse_numbers(has_origin ? origin_text : "0 0 0");
   if (!origin || origin->size() < 3)
     return bad_volume(file, absl::StrCat("has space origin \"", origin_text, "\", which is not three numbers"));
-  const auto signs = signs_to_lps(absl::AsciiStrToLower(text.value("space")));
-  const std::vector<std::string> space_units = quoted(text.value("space units"));
+  const std::string space = absl::AsciiStrToLower(text.value("space"));
+  const auto signs = signs_to_lps(space);
+  if (!signs && !is_other_space(space))
+    return bad_volume(file, absl::StrCat("has space \"", text.value("space"), "\", which is none that NRRD knows"));
+  const std::vector<std::string> space_units = quoted(text.first_of({"space units", "spaceunits"}));
   header->index_to_mm = {};
   header->index_to_mm[15] = 1.0;
-  const bool directed = text.has("space directions");
+  const bool directed = !text.first_of({"space directions", "spacedirections"}).empty();
   for (size_t row = 0; row < 3; ++row) {
     double scale = signs ? (*signs)[row] : 1.0;
     scale *= scale_of(directed && row < space_units.size() ? space_units[row] : axes[row].unit, header);
@@ -199,8 +215,9 @@ absl::Status set_nrrd_geometry(const std::filesystem::path& file, const HeaderTe
     axes.emplace_back();
     axes.back().size = size;
   }
-  const auto status =
-      text.has("space directions") ? set_directions(file, text, &axes) : set_spacings(file, text, &axes);
+  const auto status = !text.first_of({"space directions", "spacedirections"}).empty()
+                          ? set_directions(file, text, &axes)
+                          : set_spacings(file, text, &axes);
   if (!status.ok()) return status;
   if (auto kept = keep_three(file, text.value("sizes"), &axes); !kept.ok()) return kept;
   const auto three = three_sizes(file, "sizes", {axes[0].size, axes[1].size, axes[2].size});

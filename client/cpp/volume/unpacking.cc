@@ -154,19 +154,24 @@ absl::Status unpack_zlib(const std::filesystem::path& file, uint64_t offset, con
     return stream.avail_in > 0;
   };
   bool has_member = false;
+  uint64_t in_member = 0;
   while (stream.avail_in > 0 || refill()) {
     stream.next_out = unpacked.data();
     stream.avail_out = static_cast<uInt>(unpacked.size());
     const int result = inflate(&stream, Z_NO_FLUSH);
     const size_t count = unpacked.size() - stream.avail_out;
     if (count > 0 && !take(unpacked.data(), count)) return absl::OkStatus();
+    in_member += count;
     if (result == Z_STREAM_END) {
       has_member = true;
+      in_member = 0;
       if (inflateReset(&stream) != Z_OK) break;
     } else if (result != Z_OK && result != Z_BUF_ERROR) {
       // Padding after a whole member is none of ours.
-      if (has_member) break;
-      return absl::InvalidArgumentError("is damaged: its voxels are not gzip or zlib, as its header says");
+      if (has_member && in_member == 0) break;
+      return absl::InvalidArgumentError(in_member > 0
+                                            ? "is damaged: its compressed voxels do not have the sum they should"
+                                            : "is damaged: its voxels are not gzip or zlib, as its header says");
     }
   }
   return absl::OkStatus();

@@ -10,6 +10,8 @@
 namespace lipofill::client {
 namespace {
 
+constexpr uint64_t kSumWithin = uint64_t{1} << 20;
+
 /// The offset behind `lines` line ends, or none where the file has fewer.
 std::optional<uint64_t> offset_behind_lines(const std::filesystem::path& file, uint64_t offset, uint64_t lines) {
   if (lines == 0) return offset;
@@ -49,8 +51,9 @@ absl::StatusOr<uint64_t> count_all(const VoxelStream& stream, const std::filesys
     return error || bytes < stream.offset ? 0 : bytes - stream.offset;
   }
   uint64_t count = 0;
-  const absl::Status status =
-      unpack_all(stream, file, [&](const unsigned char*, size_t bytes) { return (count += bytes) < enough; });
+  // Behind the last byte stands the sum that tells damaged ones: read on to it, where it is near.
+  const absl::Status status = unpack_all(
+      stream, file, [&](const unsigned char*, size_t bytes) { return (count += bytes) <= enough + kSumWithin; });
   if (!status.ok()) return status;
   return count;
 }

@@ -129,6 +129,12 @@ TEST_F(VolumeKindsTest, SeveralGzipMembers) {
   expect_ball("a.nrrd", encoded("gzip", gzipped_twice(ball_.bytes())), kNrrdCentre);
   const std::string packed = replaced(metaimage(ball_), "Offset", "CompressedData = True\nOffset");
   expect_ball("a.mha", with_voxels(packed, gzipped_twice(ball_.bytes())), kCentre);
+  // A byte that changed on the way changes the sum at the end of its member.
+  for (const size_t from_end : {6, 900}) {
+    std::string damaged = gzipped_twice(ball_.bytes());
+    damaged[damaged.size() - from_end] = static_cast<char>(damaged[damaged.size() - from_end] ^ 0x55);
+    EXPECT_THAT(refusal_of("damaged.nrrd", encoded("gzip", damaged)), HasSubstr("is damaged"));
+  }
   expect_ball("padded.nii.gz", gzipped(nifti(ball_)) + std::string(512, '\0'), kNiftiCentre);
 }
 
@@ -203,6 +209,11 @@ TEST_F(VolumeKindsTest, NotesAndSpellings) {
   std::string capitals = replaced(nrrd_, "space: left-posterior-superior", "Space: Left-Posterior-Superior");
   expect_ball("capitals.nrrd", replaced(capitals, "type: short", "Type: SHORT"), kNrrdCentre);
   expect_ball("crlf.nrrd", replaced(nrrd_, "# a ball\n", "# a ball\r\ncontent: a ball\r\n"), kNrrdCentre);
+  // A slip of the pen would put the head elsewhere.
+  EXPECT_THAT(refusal_of("slip.nrrd", replaced(nrrd_, "space origin", "space orgin")),
+              HasSubstr("\"space orgin: (5,6,7)\""));
+  EXPECT_THAT(refusal_of("space.nrrd", replaced(nrrd_, "left-posterior", "left-postrior")),
+              HasSubstr("has space \"left-postrior"));
   expect_ball("bom.mha", "\xEF\xBB\xBF" + metaimage(ball_), kCentre);
   std::string colons = replaced(metaimage(ball_), "ElementSpacing =", "\nElementSize :");
   colons = replaced(colons, "TransformMatrix", "Rotation");

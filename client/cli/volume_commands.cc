@@ -166,6 +166,7 @@ void add_volume_commands(CLI::App& scan, Application& application) {
                         "  lipofill scan extract head.mha --isovalue -300 --out skin.ply\n"
                         "  lipofill scan extract head.mha --isovalue 250 --all --out bone.ply\n"
                         "  lipofill scan extract head.nii.gz --out skin.stl --smooth 20 --triangles 200000\n"
+                        "  lipofill scan extract segmentation.nrrd --label 2 --smooth 30 --all --out bone.ply\n"
                         "  lipofill scan extract dicom/ --series 3 --out skin.ply\n"
                         "  lipofill scan extract study.zip --out skin.ply\n",
                         [&application, options] { return extract(application, *options); });
@@ -178,6 +179,9 @@ void add_volume_commands(CLI::App& scan, Application& application) {
       ->add_option("--isovalue", options->extraction.isovalue,
                    "in the volume's values; -300 (the default) is the skin in HU, 250 the bone")
       ->capture_default_str();
+  command->add_option("--label", options->extraction.labels,
+                      "of a label map: the surface around voxels with this number, may be repeated; --smooth takes "
+                      "its steps away");
   command->add_flag("--all", options->extraction.all_components,
                     "take every piece, not only the largest connected one");
   command

@@ -91,6 +91,17 @@ def test_a_volume(tmp_path: pathlib.Path) -> None:
     expect_ball(lipofill.extract_skin(tmp_path / "ball.nrrd", tmp_path / "skin.ply", isovalue=-500))
 
 
+def test_a_label(tmp_path: pathlib.Path) -> None:
+    # Voxels of -500 HU and more are half a voxel's step from the ball.
+    write_nrrd(tmp_path / "map.nrrd")
+    header, _ = (tmp_path / "map.nrrd").read_bytes().split(b"\n\n", 1)
+    (tmp_path / "map.nrrd").write_bytes(header + b"\n\n" + numpy.where(ball() > -500, 7, 0).astype("<i2").tobytes())
+    skin = lipofill.extract_skin(tmp_path / "map.nrrd", tmp_path / "skin.ply", labels=[7])
+    assert skin.bounds_mm[0] == pytest.approx(CENTRE[0] - RADIUS_MM, abs=1.0)
+    with pytest.raises(lipofill.InvalidArgumentError, match="no voxel of label 3; its labels are 0, 7"):
+        lipofill.extract_skin(tmp_path / "map.nrrd", tmp_path / "skin.ply", labels=[3])
+
+
 def test_a_series(tmp_path: pathlib.Path) -> None:
     write_series(tmp_path / "ct")
     (series,) = lipofill.list_series(tmp_path / "ct")

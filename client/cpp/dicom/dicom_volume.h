@@ -10,7 +10,7 @@
 namespace lipofill::client {
 
 struct DicomReading {
-  std::string series;        ///< SeriesNumber or SeriesInstanceUID; empty: the largest axial CT
+  std::string series = {};   ///< SeriesNumber or SeriesInstanceUID; empty: the largest axial CT
   bool bridge_gaps = false;  ///< cross missing slices in a straight line
 };
 

@@ -23,12 +23,16 @@
 #include "absl/strings/str_cat.h"
 #include "client/cpp/io/vtk_messages.h"
 #include "client/cpp/volume/header_text.h"
+#include "client/cpp/volume/label_mask.h"
 #include "client/cpp/volume/value_range.h"
 
 namespace lipofill::client {
 namespace {
 
 using Surface = vtkSmartPointer<vtkPolyData>;
+
+/// Half way between what is in a mask and what is not.
+constexpr double kMaskIsovalue = 0.5;
 
 template <typename Filter>
 Surface output_of(Filter* filter, vtkPolyData* input) {
@@ -161,9 +165,16 @@ absl::Status check_surface_name(const std::filesystem::path& out) {
 absl::StatusOr<ExtractedSkin> extract_skin(Volume volume, const std::filesystem::path& source,
                                            const std::filesystem::path& out, const SkinExtraction& options) {
   if (auto status = check_surface_name(out); !status.ok()) return status;
+  const bool by_label = !options.labels.empty();
+  if (by_label) {
+    auto mask = mask_labels(source, volume, options.labels);
+    if (!mask.ok()) return mask.status();
+    volume = *std::move(mask);
+  }
   ExtractedSkin skin;
-  Surface surface = contour(volume, options.isovalue);
-  if (surface->GetNumberOfCells() == 0) return bad_volume(source, explain_no_surface(volume, options.isovalue));
+  const double isovalue = by_label ? kMaskIsovalue : options.isovalue;
+  Surface surface = contour(volume, isovalue);
+  if (surface->GetNumberOfCells() == 0) return bad_volume(source, explain_no_surface(volume, isovalue));
   volume.voxels = nullptr;
   surface = extract_largest(to_millimetres(volume, surface), options.all_components, &skin.components);
   if (options.smoothing_iterations > 0) surface = smooth(surface, options.smoothing_iterations);

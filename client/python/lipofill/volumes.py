@@ -124,6 +124,7 @@ def extract_skin(
     out: PathLike,
     *,
     isovalue: float = -300.0,
+    labels: Sequence[int] = (),
     series: Optional[Union[int, str]] = None,
     all_components: bool = False,
     smooth: int = 0,
@@ -138,6 +139,8 @@ def extract_skin(
         .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz or .hdr, or a folder, a zip or a file of DICOM.
     out : path
         .obj, .ply or .stl.
+    labels : sequence of int
+        Of a label map: the surface around voxels with these numbers; the isovalue is not used then.
     series : int or str, optional
         Of DICOM: SeriesNumber or SeriesInstanceUID; default: the largest axial CT.
     all_components : bool
@@ -153,6 +156,7 @@ def extract_skin(
     """
     arguments = ["extract", os.fspath(volume), "--out", os.fspath(out), f"--isovalue={isovalue!r}", f"--smooth={smooth}"]
     arguments += ["--series", str(series)] if series is not None else []
+    arguments += [f"--label={label}" for label in labels]
     arguments += ["--triangles", str(triangles)] if triangles is not None else []
     arguments += ["--all"] if all_components else []
     arguments += ["--bridge-gaps"] if bridge_gaps else []

@@ -366,6 +366,30 @@ TEST_F(VolumeKindsTest, NiftiOffsets) {
   EXPECT_THAT(refusal_of("within.nii", bytes), HasSubstr("vox_offset 12"));
 }
 
+TEST_F(VolumeKindsTest, LabelsOfALabelMap) {
+  // Within the ball 3 to the left of its middle, else 5; outside 0.
+  std::string voxels;
+  const auto values = ball_.voxels();
+  for (size_t k = 0; k < values.size(); ++k) {
+    const int16_t label = values[k] < -500 ? 0 : k % 40 <= 20 ? 3 : 5;
+    voxels.append(reinterpret_cast<const char*>(&label), 2);
+  }
+  const auto file = write("map.mha", with_voxels(metaimage(ball_), voxels));
+  SkinExtraction options;
+  options.labels = {3};
+  const auto half = extract_skin(file, folder_ / "half.ply", options);
+  ASSERT_TRUE(half.ok()) << half.status();
+  EXPECT_NEAR(half->bounds_mm[0], 20 - 14, 0.51);
+  EXPECT_NEAR(half->bounds_mm[1], 20.5, 1e-6);
+  options.labels = {3, 5};
+  const auto both = extract_skin(file, folder_ / "both.ply", options);
+  ASSERT_TRUE(both.ok()) << both.status();
+  EXPECT_NEAR(both->bounds_mm[1], 20 + 14, 0.51);
+  options.labels = {4};
+  EXPECT_THAT(std::string(extract_skin(file, folder_ / "none.ply", options).status().message()),
+              HasSubstr("no voxel of label 4; its labels are 0, 3, 5"));
+}
+
 TEST_F(VolumeKindsTest, ProposesAValueBetweenAirAndTissue) {
   const auto volume = read_volume(write("a.mha", metaimage(ball_)));
   ASSERT_TRUE(volume.ok());

@@ -82,7 +82,9 @@ absl::StatusOr<Project> parse_project(const std::filesystem::path& file, const s
     return bad_volume(file, absl::StrCat("has orientation ", orientation, ", not 1 (axial)"));
   Project project;
   project.matrix_file = text_of(value_of(matrix, "filename"));
-  const auto sizes = parse_sizes(file, "shape", absl::StrCat(shape[2], " ", shape[1], " ", shape[0]));
+  const auto shapes = parse_sizes(file, "shape", absl::StrCat(shape[2], " ", shape[1], " ", shape[0]));
+  if (!shapes.ok()) return shapes.status();
+  const auto sizes = three_sizes(file, "shape", *shapes);
   if (!sizes.ok()) return sizes.status();
   project.volume.size = *sizes;
   for (size_t i = 0; i < 3; ++i) {

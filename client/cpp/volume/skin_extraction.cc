@@ -16,18 +16,23 @@
 #include <vtkTransformPolyDataFilter.h>
 #include <vtkWindowedSincPolyDataFilter.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "client/cpp/io/vtk_messages.h"
 #include "client/cpp/volume/header_text.h"
-#include "client/cpp/volume/volume_reader.h"
+#include "client/cpp/volume/label_mask.h"
+#include "client/cpp/volume/value_range.h"
 
 namespace lipofill::client {
 namespace {
 
 using Surface = vtkSmartPointer<vtkPolyData>;
+
+/// Half way between what is in a mask and what is not.
+constexpr double kMaskIsovalue = 0.5;
 
 template <typename Filter>
 Surface output_of(Filter* filter, vtkPolyData* input) {
@@ -55,6 +60,26 @@ Surface contour(const Volume& volume, double isovalue) {
   return contour->GetOutput();
 }
 
+/// Converts voxel indices to millimetres where slices lie unevenly: p = o(k) + i a + j b, with the
+/// origin o of a slice linear between slices.
+Surface map_slices(const Volume& volume, vtkPolyData* surface) {
+  const auto& origins = volume.slice_origins;
+  const Affine& m = volume.index_to_mm;
+  vtkPoints* points = surface->GetPoints();
+  for (vtkIdType n = 0; n < points->GetNumberOfPoints(); ++n) {
+    std::array<double, 3> at{}, mapped{};
+    points->GetPoint(n, at.data());
+    const auto below = std::min(static_cast<size_t>(std::max(at[2], 0.0)), origins.size() - 2);
+    const double part = at[2] - static_cast<double>(below);
+    for (size_t row = 0; row < 3; ++row) {
+      const double origin = origins[below][row] + part * (origins[below + 1][row] - origins[below][row]);
+      mapped[row] = origin + at[0] * m[4 * row] + at[1] * m[4 * row + 1];
+    }
+    points->SetPoint(n, mapped.data());
+  }
+  return surface;
+}
+
 /// Converts voxel indices to millimetres; triangles face the lower values also when the axes
 /// are left-handed or the slope is negative.
 Surface to_millimetres(const Volume& volume, vtkPolyData* surface) {
@@ -64,7 +89,7 @@ Surface to_millimetres(const Volume& volume, vtkPolyData* surface) {
   transform->SetInput(matrix);
   vtkNew<vtkTransformPolyDataFilter> mapped;
   mapped->SetTransform(transform);
-  Surface result = output_of(mapped.Get(), surface);
+  Surface result = volume.slice_origins.empty() ? output_of(mapped.Get(), surface) : map_slices(volume, surface);
   if (matrix->Determinant() * volume.slope > 0) return result;
   vtkNew<vtkReverseSense> reversed;
   reversed->ReverseCellsOn();
@@ -128,34 +153,47 @@ absl::Status write_surface(const std::filesystem::path& out, vtkPolyData* surfac
   return absl::InvalidArgumentError(absl::StrCat("cannot write ", out.string(), ": ", messages.error()));
 }
 
-absl::Status check_output_name(const std::filesystem::path& out) {
+}  // namespace
+
+absl::Status check_surface_name(const std::filesystem::path& out) {
   const std::string extension = absl::AsciiStrToLower(out.extension().string());
   if (extension == ".obj" || extension == ".ply" || extension == ".stl") return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat("output ", out.string(), ": '", extension, "' is not one of .obj, .ply, .stl"));
 }
 
-}  // namespace
-
-absl::StatusOr<ExtractedSkin> extract_skin(const std::filesystem::path& file, const std::filesystem::path& out,
-                                           const SkinExtraction& options) {
-  if (auto status = check_output_name(out); !status.ok()) return status;
-  auto volume = read_volume(file);
-  if (!volume.ok()) return volume.status();
+absl::StatusOr<ExtractedSkin> extract_skin(Volume volume, const std::filesystem::path& source,
+                                           const std::filesystem::path& out, const SkinExtraction& options) {
+  if (auto status = check_surface_name(out); !status.ok()) return status;
+  const bool by_label = !options.labels.empty();
+  if (by_label) {
+    auto mask = mask_labels(source, volume, options.labels);
+    if (!mask.ok()) return mask.status();
+    volume = *std::move(mask);
+  }
   ExtractedSkin skin;
-  Surface surface = contour(*volume, options.isovalue);
-  volume->voxels = nullptr;
-  if (surface->GetNumberOfCells() == 0)
-    return bad_volume(file, absl::StrCat("has no surface at the value ", options.isovalue));
-  surface = extract_largest(to_millimetres(*volume, surface), options.all_components, &skin.components);
+  const double isovalue = by_label ? kMaskIsovalue : options.isovalue;
+  Surface surface = contour(volume, isovalue);
+  if (surface->GetNumberOfCells() == 0) return bad_volume(source, explain_no_surface(volume, isovalue));
+  volume.voxels = nullptr;
+  surface = extract_largest(to_millimetres(volume, surface), options.all_components, &skin.components);
   if (options.smoothing_iterations > 0) surface = smooth(surface, options.smoothing_iterations);
   if (options.target_triangles > 0) surface = decimate(surface, options.target_triangles);
   if (auto status = write_surface(out, surface); !status.ok()) return status;
   skin.vertices = static_cast<uint64_t>(surface->GetNumberOfPoints());
   skin.triangles = static_cast<uint64_t>(surface->GetNumberOfCells());
   surface->GetBounds(skin.bounds_mm.data());
-  skin.frame = volume->header.frame;
+  skin.frame = volume.frame;
+  skin.remarks = volume.remarks;
   return skin;
+}
+
+absl::StatusOr<ExtractedSkin> extract_skin(const std::filesystem::path& file, const std::filesystem::path& out,
+                                           const SkinExtraction& options) {
+  if (auto status = check_surface_name(out); !status.ok()) return status;
+  auto volume = read_volume(file);
+  if (!volume.ok()) return volume.status();
+  return extract_skin(*std::move(volume), file, out, options);
 }
 
 }  // namespace lipofill::client

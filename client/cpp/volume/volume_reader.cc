@@ -2,105 +2,85 @@
 
 #include <vtkByteSwap.h>
 #include <vtkDataArray.h>
-#include <vtkMatrix4x4.h>
-#include <vtkNIFTIImageHeader.h>
-#include <vtkNIFTIImageReader.h>
-#include <vtkNew.h>
 #include <vtkPointData.h>
 
-#include <algorithm>
+#include <Eigen/Dense>
+
 #include <cmath>
 #include <cstring>
-#include <fstream>
+#include <limits>
 
 #include "absl/strings/str_cat.h"
-#include "client/cpp/io/vtk_messages.h"
 #include "client/cpp/volume/header_text.h"
-#include "client/cpp/volume/inflated_file.h"
 
 namespace lipofill::client {
 namespace {
 
-/// Reads voxels of MetaImage and NRRD, one value a voxel, as many as the file has been found to
-/// hold. VTK's readers are not used, as they have their own ideas of a header: on damaged ones that
-/// of NRRD does not come to an end, or writes beyond its memory, and that of MetaImage loses some.
-absl::Status take_voxels(const std::filesystem::path& file, Volume* volume) {
-  const VolumeHeader& header = volume->header;
+/// Reads as many voxels as the file has been found to hold. The readers of VTK and ITK are not
+/// used: core/doc/decisions/035-volume-readers.md.
+absl::StatusOr<vtkSmartPointer<vtkImageData>> take_voxels(const std::filesystem::path& file,
+                                                          const VolumeHeader& header) {
   const uint64_t bytes = header.voxel_bytes();
   const auto values = vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(header.vtk_type));
-  values->SetNumberOfTuples(static_cast<vtkIdType>(bytes / header.bytes_per_voxel));
+  values->SetNumberOfTuples(static_cast<vtkIdType>(header.voxel_count()));
   char* voxels = static_cast<char*>(values->GetVoidPointer(0));
   uint64_t read = 0;
-  if (header.compressed) {
-    inflate_file(header.data_file, header.data_offset, [&](const unsigned char* piece, size_t size) {
-      const auto taken = std::min<uint64_t>(size, bytes - read);
-      std::memcpy(voxels + read, piece, taken);
-      return (read += taken) < bytes;
-    });
-  } else {
-    std::ifstream input(header.data_file, std::ios::binary);
-    input.seekg(static_cast<std::streamoff>(header.data_offset));
-    input.read(voxels, static_cast<std::streamsize>(bytes));
-    read = static_cast<uint64_t>(input.gcount());
-  }
+  const auto status =
+      unpack_voxels(header.voxels, bytes / header.voxels.files.size(), [&](const unsigned char* piece, size_t size) {
+        std::memcpy(voxels + read, piece, size);
+        read += size;
+        return true;
+      });
+  if (!status.ok()) return bad_volume(file, status.message());
   if (read < bytes) return bad_volume(file, "cannot be read to its end");
-  if (header.big_endian) {
+  if (header.big_endian && header.bytes_per_voxel > 1) {
     vtkByteSwap::SwapVoidRange(voxels, static_cast<size_t>(values->GetNumberOfTuples()),
                                static_cast<size_t>(header.bytes_per_voxel));
   }
-  volume->voxels = vtkSmartPointer<vtkImageData>::New();
-  volume->voxels->SetDimensions(static_cast<int>(header.size[0]), static_cast<int>(header.size[1]),
-                                static_cast<int>(header.size[2]));
-  volume->voxels->GetPointData()->SetScalars(values);
-  return absl::OkStatus();
+  auto image = vtkSmartPointer<vtkImageData>::New();
+  image->SetDimensions(static_cast<int>(header.size[0]), static_cast<int>(header.size[1]),
+                       static_cast<int>(header.size[2]));
+  image->GetPointData()->SetScalars(values);
+  return image;
 }
 
-absl::Status take_nifti_voxels(const std::filesystem::path& file, vtkNIFTIImageReader* reader, Volume* volume) {
-  const VtkMessages messages;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  if (!messages.error().empty()) return bad_volume(file, absl::StrCat("cannot be read: ", messages.error()));
-  vtkImageData* image = reader->GetOutput();
-  int size[3];
-  image->GetDimensions(size);
-  for (size_t i = 0; i < 3; ++i) {
-    if (static_cast<uint64_t>(size[i]) != volume->header.size[i])
-      return bad_volume(file, "has voxels of another size than its header");
-  }
-  if (image->GetNumberOfScalarComponents() != 1) return bad_volume(file, "has more than one value a voxel");
-  volume->voxels = vtkSmartPointer<vtkImageData>::New();
-  volume->voxels->SetDimensions(size);
-  volume->voxels->GetPointData()->SetScalars(image->GetPointData()->GetScalars());
-  return absl::OkStatus();
-}
-
-/// NIfTI maps voxel centres to RAS millimetres by its sform, else its qform, else by the spacing
-/// alone. The reader has put the slices into the order its matrices speak of.
-void take_nifti_geometry(vtkNIFTIImageReader* reader, Volume* volume) {
-  const vtkNIFTIImageHeader* header = reader->GetNIFTIHeader();
-  vtkMatrix4x4* matrix = const_cast<vtkNIFTIImageHeader*>(header)->GetSFormCode() > 0 ? reader->GetSFormMatrix()
-                                                                                      : reader->GetQFormMatrix();
-  double spacing[3];
-  reader->GetOutput()->GetSpacing(spacing);
-  const bool oriented = volume->header.frame == "LPS";
-  volume->index_to_mm = {};
-  volume->index_to_mm[15] = 1.0;
-  for (int row = 0; row < 3; ++row) {
-    const double to_lps = oriented && row < 2 ? -1.0 : 1.0;
-    for (int column = 0; column < 4; ++column) {
-      const double unit = column < 3 ? spacing[column] : 1.0;
-      const double entry = matrix != nullptr ? matrix->GetElement(row, column) : (row == column ? 1.0 : 0.0);
-      volume->index_to_mm[static_cast<size_t>(4 * row + column)] = to_lps * entry * unit;
+/// Puts air, or what is lower, where a voxel is no number, and the highest value there is for an
+/// infinite one.
+template <typename T>
+absl::Status fill_with_air(const std::filesystem::path& file, vtkDataArray* values, Volume* volume) {
+  T* const voxels = static_cast<T*>(values->GetVoidPointer(0));
+  const vtkIdType count = values->GetNumberOfTuples();
+  T least = std::numeric_limits<T>::max(), most = std::numeric_limits<T>::lowest();
+  vtkIdType wrong = 0;
+  for (vtkIdType k = 0; k < count; ++k) {
+    if (!std::isfinite(voxels[k])) {
+      ++wrong;
+      continue;
     }
+    least = std::min(least, voxels[k]);
+    most = std::max(most, voxels[k]);
   }
-  if (reader->GetRescaleSlope() != 0.0) {
-    volume->slope = reader->GetRescaleSlope();
-    volume->intercept = reader->GetRescaleIntercept();
+  if (wrong == 0) return absl::OkStatus();
+  if (wrong == count) return bad_volume(file, "has no voxel that is a finite number");
+  const double air = (kAirHu - volume->intercept) / volume->slope;
+  // A negative slope has air above everything.
+  const T nothing = static_cast<T>(volume->slope > 0 ? std::min<double>(air, least) : std::max<double>(air, most));
+  const T everything = volume->slope > 0 ? most : least;
+  for (vtkIdType k = 0; k < count; ++k) {
+    if (std::isfinite(voxels[k])) continue;
+    const bool is_high = std::isinf(voxels[k]) && (voxels[k] > 0) == (volume->slope > 0);
+    voxels[k] = is_high ? everything : nothing;
   }
+  volume->remarks.push_back(absl::StrCat(wrong, " of ", count, " voxels are not finite numbers: they are taken for air",
+                                         ", infinite ones for the highest value"));
+  return absl::OkStatus();
 }
 
-double determinant(const Affine& m) {
-  return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) + m[2] * (m[4] * m[9] - m[5] * m[8]);
+bool spans_space(const Affine& map) {
+  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(map.data());
+  const Eigen::Matrix3d axes = matrix.topLeftCorner<3, 3>();
+  const double box = axes.colwise().norm().prod();
+  return box > 0.0 && std::abs(axes.determinant()) > 1e-6 * box;
 }
 
 }  // namespace
@@ -108,19 +88,21 @@ double determinant(const Affine& m) {
 absl::StatusOr<Volume> read_volume(const std::filesystem::path& file) {
   auto header = read_volume_header(file);
   if (!header.ok()) return header.status();
+  if (!spans_space(header->index_to_mm)) return bad_volume(file, "has axes that do not span space, or a spacing of 0");
+  auto voxels = take_voxels(file, *header);
+  if (!voxels.ok()) return voxels.status();
   Volume volume;
-  volume.header = *header;
+  volume.voxels = *voxels;
   volume.index_to_mm = header->index_to_mm;
+  volume.slope = header->slope;
+  volume.intercept = header->intercept;
+  volume.frame = header->frame;
+  volume.remarks = header->remarks;
+  vtkDataArray* values = volume.voxels->GetPointData()->GetScalars();
   absl::Status status;
-  if (header->format == VolumeFormat::kNifti) {
-    vtkNew<vtkNIFTIImageReader> reader;
-    status = take_nifti_voxels(file, reader, &volume);
-    if (status.ok()) take_nifti_geometry(reader, &volume);
-  } else {
-    status = take_voxels(file, &volume);
-  }
+  if (header->vtk_type == VTK_FLOAT) status = fill_with_air<float>(file, values, &volume);
+  if (header->vtk_type == VTK_DOUBLE) status = fill_with_air<double>(file, values, &volume);
   if (!status.ok()) return status;
-  if (!(std::abs(determinant(volume.index_to_mm)) > 1e-9)) return bad_volume(file, "has axes that do not span space");
   return volume;
 }
 

@@ -44,6 +44,7 @@ from lipofill.runs import Run
 from lipofill.series import Series
 from lipofill.shapes import Shape
 from lipofill.simulations import Simulation
+from lipofill.volumes import DicomSeries, Skin, extract_skin, list_series
 from lipofill.watching import Watch
 
 __version__ = "0.1.0"
@@ -55,6 +56,7 @@ __all__ = [
     "Connection",
     "Credentials",
     "Daemon",
+    "DicomSeries",
     "DataLossError",
     "DeadlineExceededError",
     "FailedPreconditionError",
@@ -74,6 +76,7 @@ __all__ = [
     "Shape",
     "Simulation",
     "SimulationFailedError",
+    "Skin",
     "UnauthenticatedError",
     "UnavailableError",
     "Watch",
@@ -83,6 +86,8 @@ __all__ = [
     "by_landmarks",
     "constant",
     "disc",
+    "extract_skin",
+    "list_series",
     "print_progress",
     "samples",
 ]

@@ -142,6 +142,19 @@ export class Viewport {
     this.onCamera(this.pose);
   }
 
+  /** Turns the camera around what it looks at [degrees]. */
+  turn(azimuth: number, elevation: number): void {
+    const camera = this.renderer.getActiveCamera();
+    camera.azimuth(azimuth);
+    camera.elevation(elevation);
+    camera.orthogonalizeViewUp();
+  }
+
+  /** Comes nearer by a factor above 1, goes away by one below. */
+  approach(factor: number): void {
+    this.renderer.getActiveCamera().dolly(factor);
+  }
+
   private scale(): number {
     return this.gl.getSize()[0] / Math.max(1, this.container.clientWidth);
   }

@@ -31,10 +31,10 @@ beforeAll(async () => {
   await page.getByText("9,991 vertices").waitFor();
   await page.getByLabel("From file…").setInputFiles(join(root, "client/examples/faces/half_face.landmarks.json"));
   await page.getByLabel("Open plan…").setInputFiles(settledPlan());
-  await page.keyboard.press("2");
+  await page.keyboard.press("3");
   await page.getByRole("button", { name: "Build the model" }).click();
   await page.getByText("2,480 elements").waitFor({ timeout: 60_000 });
-  await page.keyboard.press("3");
+  await page.keyboard.press("4");
 });
 afterAll(() => system.stop());
 afterEach(async ({ task }) => {

@@ -108,12 +108,21 @@ function Placement() {
   const report = target.value?.report?.target;
   const found = report?.registration;
   if (!report || !found) return null;
+  const over = `${(100 * found.overlap).toFixed(0)} % of the skin lies over it, half of that within ${found.medianMm.toFixed(2)} mm`;
+  if (report.mirroredSide) {
+    const { turnedDegrees = 0, movedMm = 0 } = report.plane ?? {};
+    return (
+      <p class="quiet">
+        The goal is the {report.mirroredSide} side, mirrored: {over}. The plane of symmetry is that of the landmarks,
+        turned by {turnedDegrees.toFixed(1)}° and moved by {movedMm.toFixed(1)} mm until both sides fit.
+      </p>
+    );
+  }
   return (
     <p class="quiet">
-      The goal is {report.mirroredSide ? `the ${report.mirroredSide} side, mirrored` : "another scan of this face"}.{" "}
-      {found.start === "in place" ? "It was left where it lies" : "It was laid onto the face"}:{" "}
-      {(100 * found.overlap).toFixed(0)} % of the skin lies over it, half of that within {found.medianMm.toFixed(2)} mm.
-      It may be off by {found.expectedErrorMm.toFixed(2)} mm (confidence {(100 * found.confidence).toFixed(0)} %).
+      The goal is another scan of this face. It was{" "}
+      {found.start === "in place" ? "left where it lies" : "laid onto the face"}: {over}. It may be off by{" "}
+      {found.expectedErrorMm.toFixed(2)} mm (confidence {(100 * found.confidence).toFixed(0)} %).
     </p>
   );
 }

@@ -1,4 +1,5 @@
 // What the face lacks to its goal: in all, and by region of the face.
+import type { RegionDeficit } from "@wire/planning_service_pb";
 import { busy } from "../activity";
 import { plainWords, sentence } from "../plan/field_words";
 import { plan } from "../plan/state";
@@ -9,6 +10,31 @@ import { Section, Segmented } from "../widgets/fields";
 
 /** What is less than this in a region is what scans are off by. */
 const leastMl = 0.05;
+/** So many regions are listed at once; those with less come after. */
+const firstRegions = 6;
+
+function Table({ regions }: { regions: RegionDeficit[] }) {
+  return (
+    <table class="figures-table">
+      <thead>
+        <tr>
+          <th scope="col">Region</th>
+          <th scope="col">missing mL</th>
+          <th scope="col">at most mm</th>
+        </tr>
+      </thead>
+      <tbody>
+        {regions.map(({ region, volume, maxDeficitMm }) => (
+          <tr key={region}>
+            <th scope="row">{readable(region)}</th>
+            <td>{volume!.deficitMl.toFixed(1)}</td>
+            <td>{maxDeficitMm.toFixed(1)}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
 
 function Regions() {
   const regions = (deficit.value?.regions ?? [])
@@ -17,26 +43,16 @@ function Regions() {
   if (deficit.value?.regions.length === 0)
     return <p class="hint">Set the landmarks of the face to see this by region.</p>;
   if (regions.length === 0) return <p class="hint">No region of the face lacks {leastMl} mL or more.</p>;
+  const rest = regions.slice(firstRegions);
   return (
     <>
-      <table class="figures-table">
-        <thead>
-          <tr>
-            <th scope="col">Region</th>
-            <th scope="col">missing mL</th>
-            <th scope="col">at most mm</th>
-          </tr>
-        </thead>
-        <tbody>
-          {regions.map(({ region, volume, maxDeficitMm }) => (
-            <tr key={region}>
-              <th scope="row">{readable(region)}</th>
-              <td>{volume!.deficitMl.toFixed(1)}</td>
-              <td>{maxDeficitMm.toFixed(1)}</td>
-            </tr>
-          ))}
-        </tbody>
-      </table>
+      <Table regions={regions.slice(0, firstRegions)} />
+      {rest.length > 0 && (
+        <details>
+          <summary>{rest.length} regions that lack less</summary>
+          <Table regions={rest} />
+        </details>
+      )}
       <p class="quiet">Regions overlap: their volumes do not add up.</p>
     </>
   );

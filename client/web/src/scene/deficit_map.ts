@@ -4,7 +4,7 @@ import { mapFor, type ColourMap } from "./colour_maps";
 /** So little is within what a scan is off by: the scale does not magnify it. */
 const leastScaleMm = 2;
 /** Beyond this share of the skin the colours no longer change. */
-const share = 0.995;
+const share = 0.999;
 
 /** @param distances  signed [mm], NaN where the skin is not compared */
 export function deficitMap(distances: Float32Array): ColourMap {

@@ -2,7 +2,7 @@
 import { effect, signal, untracked } from "@preact/signals";
 import { placedZones, zoneUnderSkin } from "../plan/check";
 import { locate, pointOf } from "../plan/landmarks";
-import { chart, model, modelMeshes, plan, region, scanMesh, zones } from "../plan/state";
+import { chart, model, modelMeshes, plan, region, scan, scanMesh, zones } from "../plan/state";
 import { liveSite, tool } from "../plan/tools";
 import { distance, frame, meshes, planOfRun, runIsOpen, simulation } from "../run/state";
 import { isFinal, shownShapeOf } from "../shape/state";
@@ -20,11 +20,13 @@ import { lookAtFace, lookAtLift, lookAtMissing, lookAtRegion } from "./view_tool
 type End = () => void;
 
 export function bindFace(scene: FaceScene): End {
+  let of: string | undefined;
   return effect(() => {
     const mesh = shownMesh.value;
-    const first = !scene.hasFace;
+    const isNew = !scene.hasFace || scan.peek()?.name !== of;
     scene.setFace(mesh);
-    if (first && mesh) untracked(() => (chart.value || meshes.value ? lookAtRegion() : lookAtFace("front")));
+    of = scan.peek()?.name;
+    if (isNew && mesh) untracked(() => (chart.value || meshes.value ? lookAtRegion() : lookAtFace("front")));
   });
 }
 

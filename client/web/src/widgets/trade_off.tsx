@@ -44,7 +44,7 @@ function Picture({ curve, proposed, picked, onPick }: Props) {
       <text x={width - right} y={height - 12} text-anchor="end">
         {toX.toFixed(1)} mL
       </text>
-      <text x={left + 4} y={top + 4}>
+      <text x={width - right} y={top + 4} text-anchor="end">
         mm from the goal (RMS)
       </text>
       <polyline points={line} />

@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Download, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
-import { seriousProblems } from "../system/axe";
+import { wcagProblems } from "../system/axe";
 import { halfFace, halfFaceLandmarks, otherFace } from "../system/faces";
 import { listPatients, listScans } from "../system/store";
 import { picture, root, System } from "../system/system";
@@ -63,7 +63,7 @@ describe("an empty page", () => {
     await picture(page, "8-empty");
     for (const step of ["Face", "Goal", "Tissue", "Fat", "Run"]) {
       await goTo(step);
-      expect(await seriousProblems(page), step).toEqual([]);
+      expect(await wcagProblems(page), step).toEqual([]);
     }
     await goTo("Face");
     expect(await done()).toEqual([]);

@@ -4,7 +4,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Download, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
-import { seriousProblems } from "../system/axe";
+import { wcagProblems } from "../system/axe";
 import { halfFace, halfFaceLandmarks, sunkFace } from "../system/faces";
 import { PictureReader, type Box } from "../system/pixels";
 import { picture, root, System } from "../system/system";
@@ -63,7 +63,7 @@ describe("a goal", () => {
   it("is asked for in its own step, which is not done by looking at it", async () => {
     await goTo("Goal");
     await button("Mirror the right side").waitFor();
-    expect(await seriousProblems(page)).toEqual([]);
+    expect(await wcagProblems(page)).toEqual([]);
     await goTo("Face");
     expect(await page.locator(".steps .done").allTextContents()).toEqual(["✓Face"]);
     await goTo("Goal");
@@ -90,7 +90,7 @@ describe("a goal", () => {
       .poll(async () => reader.ofHue(await picture(page, "7-missing"), await cheek(), missingBlue), soon)
       .toBeGreaterThan(4000);
     expect(await page.locator(".scalar-bar").textContent()).toMatch(/too much.*missing/s);
-    expect(await seriousProblems(page)).toEqual([]);
+    expect(await wcagProblems(page)).toEqual([]);
   });
 
   it("says under the cursor how much is missing there", async () => {
@@ -140,7 +140,7 @@ describe("a proposal", () => {
     expect(await volume(0)).not.toBe(3);
     await page.getByText("Settled shape, not yet run").waitFor({ timeout: 60_000 });
     await picture(page, "7-proposed");
-    expect(await seriousProblems(page)).toEqual([]);
+    expect(await wcagProblems(page)).toEqual([]);
   });
 
   it("has other points to pick, each undone by itself", async () => {
@@ -192,7 +192,7 @@ describe("the injection list", () => {
       (await volume(0)) + ((await page.getByLabel("Volume", { exact: true }).count()) > 1 ? await volume(1) : 0),
       2,
     );
-    expect(await seriousProblems(page)).toEqual([]);
+    expect(await wcagProblems(page)).toEqual([]);
   });
 
   it("becomes a plan pass by pass, and back", async () => {

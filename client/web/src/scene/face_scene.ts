@@ -29,6 +29,7 @@ export class FaceScene {
   private faceMesh: Mesh | undefined;
   private patch: Surface | undefined;
   private patchShown = true;
+  private shownDetail = 1;
   private layers: Surface[] = [];
   private readonly reader = new FrameReader();
   private readonly running = new RunningMap();
@@ -58,6 +59,7 @@ export class FaceScene {
     [this.faceMesh, this.numbers, this.distance] = [mesh, undefined, undefined];
     this.running.forget();
     this.face = mesh && new MovingSurface(mesh, this.viewport);
+    if (this.face) this.face.coarse = this.shownDetail < 1;
     if (this.before) this.fillBefore();
     this.viewport.request();
   }
@@ -155,6 +157,13 @@ export class FaceScene {
     if (!hit || !this.face) return undefined;
     const value = valueAt(this.distance!, this.face.triangles, hit);
     return Number.isNaN(value) ? undefined : value;
+  }
+
+  /** Less than 1 where a machine is too slow: fewer pixels, and coarser what does not move. */
+  set detail(share: number) {
+    this.viewport.detail = share;
+    this.shownDetail = share;
+    if (this.face) this.face.coarse = share < 1;
   }
 
   /** The largest displacement shown [mm]. */

@@ -1,5 +1,6 @@
 // A surface of which only a part moves. The toolkit sends a surface to the graphics card anew when
-// it changes: the part that is still is sent once, however large the face is.
+// it changes: the part that is still is sent once, however large the face is. Where a machine is
+// too slow that part is drawn coarser.
 import type vtkActor from "@kitware/vtk.js/Rendering/Core/Actor";
 import { trianglesOf, type Mesh } from "../api/meshes";
 import type { Rgb } from "./colour_maps";
@@ -9,6 +10,10 @@ import { computeNormals } from "./surface_geometry";
 
 /** What moves less than this is still: it is less than a frame's fields resolve [mm]. */
 const stillMm = 0.01;
+/** Cells of what is still, where it is drawn coarser: a face is known in them [mm]. */
+const coarseMm = 6;
+/** Colours that differ by less look alike: what hardly moves is hardly tinted. */
+const faint = 8;
 /** Where more than this share of the triangles moves, it is not worth to part them. */
 const mostMoving = 0.6;
 
@@ -18,14 +23,24 @@ interface Part {
   vertices: Uint32Array;
 }
 
-/** The triangles of a mesh that are chosen, with the vertices they use. */
-function partOf(mesh: Mesh, triangles: Uint32Array, isChosen: (first: number) => boolean): Part {
+/**
+ * The triangles of a mesh that are chosen, with the vertices they use.
+ * @param stands  the vertex that is drawn in place of another one; triangles that shrink to an edge
+ *   or a point go
+ */
+function partOf(
+  mesh: Mesh,
+  triangles: Uint32Array,
+  isChosen: (first: number) => boolean,
+  stands: (vertex: number) => number = (vertex) => vertex,
+): Part {
   const number = new Map<number, number>();
   const cells: number[] = [];
   for (let t = 0; t < triangles.length; t += 3) {
     if (!isChosen(t)) continue;
-    for (let c = 0; c < 3; ++c) {
-      const vertex = triangles[t + c];
+    const corners = [stands(triangles[t]), stands(triangles[t + 1]), stands(triangles[t + 2])];
+    if (corners[0] === corners[1] || corners[1] === corners[2] || corners[2] === corners[0]) continue;
+    for (const vertex of corners) {
       let k = number.get(vertex);
       if (k === undefined) number.set(vertex, (k = number.size));
       cells.push(k);
@@ -35,6 +50,23 @@ function partOf(mesh: Mesh, triangles: Uint32Array, isChosen: (first: number) =>
   const points = new Float32Array(3 * vertices.length);
   gather(mesh.points, vertices, points);
   return { vertices, surface: new Surface({ name: mesh.name, points, cells: Uint32Array.from(cells), corners: 3 }) };
+}
+
+/**
+ * For each vertex the first one in its cell of a grid; vertices that are kept stand for themselves.
+ */
+function clustered(points: Float32Array, isKept: Uint8Array): (vertex: number) => number {
+  const firstIn = new Map<string, number>();
+  const stands = new Uint32Array(isKept.length);
+  for (let vertex = 0; vertex < stands.length; ++vertex) {
+    stands[vertex] = vertex;
+    if (isKept[vertex] === 1) continue;
+    const cell = [0, 1, 2].map((c) => Math.floor(points[3 * vertex + c] / coarseMm)).join();
+    const first = firstIn.get(cell);
+    if (first === undefined) firstIn.set(cell, vertex);
+    else stands[vertex] = first;
+  }
+  return (vertex) => stands[vertex];
 }
 
 function gather(from: ArrayLike<number>, vertices: Uint32Array, to: { [index: number]: number }): void {
@@ -55,6 +87,9 @@ export class MovingSurface {
   /** (3 n) bytes, changed by whoever paints, then shown by recolour() */
   readonly colours: Uint8Array;
   private still: Part;
+  /** The same, coarser; there once it was wanted. */
+  private stillCoarse: Part | undefined;
+  private isCoarse = false;
   private moving: Part | undefined;
   /** of vertices, 1 for those of triangles that move */
   private readonly isMoving: Uint8Array;
@@ -103,9 +138,12 @@ export class MovingSurface {
     }
     const { surface, vertices } = this.still;
     gather(this.colours, vertices, surface.colours);
-    if (surface.colours.every((value, k) => value === this.stillColours[k])) return;
+    if (surface.colours.every((value, k) => Math.abs(value - this.stillColours[k]) <= faint)) return;
     this.stillColours.set(surface.colours);
     surface.recolour();
+    if (this.stillCoarse === undefined) return;
+    gather(this.colours, this.stillCoarse.vertices, this.stillCoarse.surface.colours);
+    this.stillCoarse.surface.recolour();
   }
 
   /** Marks vertices of triangles that move; whether there are new ones. */
@@ -126,9 +164,8 @@ export class MovingSurface {
 
   /** Parts what moves from what is still. */
   private part(): void {
-    const { triangles, isMoving } = this;
-    const goes = (t: number): boolean =>
-      isMoving[triangles[t]] === 1 && isMoving[triangles[t + 1]] === 1 && isMoving[triangles[t + 2]] === 1;
+    const { triangles } = this;
+    const goes = (t: number): boolean => this.goes(t);
     let count = 0;
     for (let t = 0; t < triangles.length; t += 3) if (goes(t)) ++count;
     this.drop();
@@ -140,6 +177,35 @@ export class MovingSurface {
     this.place(this.still);
     for (const part of this.parts) this.scene.add(part.surface.actor);
     this.opacity = this.shownOpacity;
+    this.showStill();
+  }
+
+  /** Whether what is still is drawn coarser; what moves never is. */
+  set coarse(wanted: boolean) {
+    if (wanted === this.isCoarse) return;
+    this.isCoarse = wanted;
+    this.showStill();
+  }
+
+  private showStill(): void {
+    const isCoarse = this.isCoarse && this.moving !== undefined;
+    if (isCoarse && this.stillCoarse === undefined) {
+      const { triangles, isMoving } = this;
+      const stays = (t: number): boolean => !this.goes(t);
+      this.stillCoarse = partOf(this.mesh, triangles, stays, clustered(this.rest, isMoving));
+      this.place(this.stillCoarse);
+      gather(this.colours, this.stillCoarse.vertices, this.stillCoarse.surface.colours);
+      this.stillCoarse.surface.recolour();
+      this.stillCoarse.surface.opacity = this.shownOpacity;
+      this.scene.add(this.stillCoarse.surface.actor);
+    }
+    if (this.stillCoarse) this.stillCoarse.surface.visible = isCoarse;
+    this.still.surface.visible = !isCoarse;
+  }
+
+  private goes(t: number): boolean {
+    const { triangles, isMoving } = this;
+    return isMoving[triangles[t]] + isMoving[triangles[t + 1]] + isMoving[triangles[t + 2]] === 3;
   }
 
   private place({ surface, vertices }: Part): void {
@@ -149,7 +215,7 @@ export class MovingSurface {
   }
 
   private get parts(): Part[] {
-    return this.moving ? [this.still, this.moving] : [this.still];
+    return [this.still, this.stillCoarse, this.moving].filter((part) => part !== undefined);
   }
 
   set opacity(value: number) {
@@ -162,6 +228,7 @@ export class MovingSurface {
       this.scene.remove(surface.actor);
       surface.dispose();
     }
+    this.stillCoarse = undefined;
   }
 
   dispose(): void {

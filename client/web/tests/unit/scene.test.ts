@@ -122,6 +122,26 @@ describe("a surface of which a part moves", () => {
     surface.dispose();
     expect(scene.actors.size).toBe(0);
   });
+  it("is coarser where it is still, as long as that is wanted", () => {
+    const scene = new Scene();
+    const surface = new MovingSurface({ ...mesh, points: points.map((v) => 2 * v) }, scene);
+    const shown = (): number => {
+      const actors = [...scene.actors].filter((actor) => actor.getVisibility());
+      return actors
+        .map((actor) => (actor.getMapper()!.getInputData() as vtkPolyData).getPolys().getNumberOfCells())
+        .reduce((a, b) => a + b);
+    };
+    surface.move(bump([210], 2));
+    surface.coarse = true;
+    expect(shown()).toBeLessThan(0.4 * (cells.length / 3));
+    expect(scene.drawn.highest).toBe(2);
+    surface.move(bump([210, 50], 3));
+    expect(shown()).toBeLessThan(0.5 * (cells.length / 3));
+    surface.coarse = false;
+    expect(shown()).toBe(cells.length / 3);
+    surface.dispose();
+    expect(scene.actors.size).toBe(0);
+  });
   it("stays whole where most of it moves", () => {
     const scene = new Scene();
     const surface = new MovingSurface(mesh, scene);

@@ -73,6 +73,14 @@ export function closeCase(): void {
   });
 }
 
+/** The page of a patient whose face is still to come. */
+export function beginCase(owner: Owner): void {
+  batch(() => {
+    closeCase();
+    [patient.value, patientName.value] = [owner.name, owner.displayName];
+  });
+}
+
 /** Sends a scan to a patient, or to a new one, who goes again when the scan is refused. */
 async function send(
   owner: Owner | undefined,

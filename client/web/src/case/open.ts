@@ -17,7 +17,7 @@ import { parsePlan } from "../plan/plan_file";
 import { patient, patientName, plan, replacePlan, scan, setModel, startPlan } from "../plan/state";
 import { open, runText } from "../run/run";
 import { planOfRun } from "../run/state";
-import { closeCase, loadMesh, ownerOf, showFace, type Owner } from "./face";
+import { beginCase, closeCase, loadMesh, ownerOf, showFace, type Owner } from "./face";
 
 /** Of what may be gone: undefined. */
 export async function found<T>(ask: Promise<T>): Promise<T | undefined> {
@@ -56,8 +56,7 @@ async function showModel(owner: Owner, model: Model, run: Simulation | undefined
   const isOpen = scanOf(model) !== "" && scanOf(model) === scan.value?.name;
   const meshes = await collectMeshes(patients.downloadModelMesh({ name: model.name }));
   if (!isOpen) {
-    closeCase();
-    [patient.value, patientName.value] = [owner.name, owner.displayName];
+    beginCase(owner);
     if (scanOf(model) !== "") await showScan(owner, scanOf(model));
   }
   batch(() => {
@@ -129,8 +128,7 @@ export async function showCase(name: string): Promise<void> {
     planOfRun.value = runText.value;
     return;
   }
-  closeCase();
-  [patient.value, patientName.value] = [owner.name, owner.displayName];
+  beginCase(owner);
   if (face) showFace(owner, face, await loadMesh(face), fileOf(face));
 }
 

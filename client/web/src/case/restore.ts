@@ -4,7 +4,7 @@ import { batch, computed, effect, signal } from "@preact/signals";
 import { attempt } from "../activity";
 import { patients, simulations } from "../api/client";
 import { collectMeshes } from "../api/meshes";
-import { builtFrom, model, patient, patientName, plan, scan, scanFile, setModel, startPlan } from "../plan/state";
+import { builtFrom, model, patient, plan, scan, scanFile, setModel, startPlan } from "../plan/state";
 import { open } from "../run/run";
 import { planOfRun, recorded, simulation } from "../run/state";
 import { step } from "../stage/stage_state";
@@ -12,7 +12,7 @@ import { tool } from "../plan/tools";
 import { listTargets, showTarget } from "../target/make_target";
 import { target } from "../target/state";
 import { parseAddress, writeAddress, type Address } from "./address";
-import { closeCase, loadMesh, showFace } from "./face";
+import { beginCase, closeCase, loadMesh, showFace } from "./face";
 import { found, openSample, showCase, showRun } from "./open";
 import { keep, recall, type Kept } from "./kept";
 
@@ -50,7 +50,7 @@ async function showKept(of: string, kept: Kept): Promise<void> {
   if (owner && kept.scan !== "") {
     const face = await patients.getScan({ name: kept.scan });
     showFace(owner, face, await loadMesh(face), kept.file);
-  } else if (owner) [patient.value, patientName.value] = [owner.name, owner.displayName];
+  } else if (owner) beginCase(owner);
   startPlan(kept.plan);
   const built = kept.model === "" ? undefined : await found(patients.getModel({ name: kept.model }));
   if (built) setModel(built, await collectMeshes(patients.downloadModelMesh({ name: built.name })), kept.builtFrom);

@@ -87,6 +87,15 @@ function readableNames(text: string, { model, simulation }: Plan): string {
     .reduce((said, name) => said.replaceAll(name, readable(name).toLowerCase()), text);
 }
 
+const files = /\.(obj|ply|stl|json|csv)$/;
+
+/** "scan_region.bone_scan" as "bone scan", a region by its name; names of files stay. */
+function schemaWord(path: string, plan: Plan): string {
+  if (files.test(path)) return path;
+  const last = path.split(".").at(-1)!;
+  return /_(left|right)$/.test(last) ? readable(last).toLowerCase() : wordOf(plan, path, last);
+}
+
 /**
  * What the daemon says, without the names of its schema and the coordinates of its chart. The page
  * calls a target a goal.
@@ -96,7 +105,7 @@ export function plainWords(description: string, plan: Plan): string {
     .replace(/\btarget\b/g, "goal")
     .replace(/\bTarget\b/g, "Goal")
     .replace(/lies at \([^)]*\)(?: of the chart)?,?/g, "lies")
-    .replace(/\bat \([-\d.e]+, [-\d.e]+\)(?: of the chart)?/g, "there")
+    .replace(/ at \([-\d.e]+, [-\d.e]+\)(?: of the chart)?/g, "")
     .replace(/\b(?:spec|simulation|model|plan)(?:\.\w+(?:\[\d+\])?)+/g, (path) => {
       const words = fieldWords(path.replace(/^spec\./, ""), plan);
       return words.charAt(0).toLowerCase() + words.slice(1);
@@ -104,7 +113,8 @@ export function plainWords(description: string, plan: Plan): string {
     .replace(/\b(?:films|zones|injections|layers|ligaments|walls)\[\d+\](?:\.\w+(?:\[\d+\])?)*/g, (path) => {
       const words = fieldWords(path, plan);
       return words.charAt(0).toLowerCase() + words.slice(1);
-    });
+    })
+    .replace(/\b[a-z0-9_]*_[a-z0-9_]*(?:\.[a-z0-9_]+)*\b/g, (path) => schemaWord(path, plan));
 }
 
 /** With a capital letter and an end. */

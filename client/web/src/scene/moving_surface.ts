@@ -69,7 +69,7 @@ function clustered(points: Float32Array, isKept: Uint8Array): (vertex: number) =
   return (vertex) => stands[vertex];
 }
 
-function gather(from: ArrayLike<number>, vertices: Uint32Array, to: { [index: number]: number }): void {
+function gather(from: ArrayLike<number>, vertices: Uint32Array, to: Float32Array | Uint8Array): void {
   for (let k = 0, at = 0; k < vertices.length; ++k) {
     const source = 3 * vertices[k];
     to[at++] = from[source];

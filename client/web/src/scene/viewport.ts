@@ -55,7 +55,7 @@ export class Viewport {
     canvas.getContext("webgl2", {
       antialias: hasGraphicsCard(),
       depth: true,
-      alpha: true,
+      alpha: false,
       powerPreference: "high-performance",
     });
     this.gl.setContainer(container);

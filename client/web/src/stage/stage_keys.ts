@@ -17,7 +17,7 @@ const directions: Record<string, [number, number]> = {
 /** One for a stroke: from the first dab to the next move of the focus or the tool. */
 let stroke = { of: tool.value };
 
-function use(view: HTMLElement): void {
+function apply(view: HTMLElement): void {
   const at = keyCursor.value;
   if (at === undefined) return;
   const box = view.getBoundingClientRect();
@@ -50,7 +50,7 @@ export function onStageKey(event: JSX.TargetedKeyboardEvent<HTMLDivElement>): vo
   else if (direction) viewport?.turn(-turnDegrees * direction[0], -turnDegrees * direction[1]);
   else if (event.key === "+" || event.key === "=") viewport?.approach(nearer);
   else if (event.key === "-") viewport?.approach(1 / nearer);
-  else if (event.key === "Enter" && hasTool) use(view);
+  else if (event.key === "Enter" && hasTool) apply(view);
   else return;
   event.preventDefault();
   event.stopPropagation();

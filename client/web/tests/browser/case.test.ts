@@ -77,13 +77,13 @@ describe("an empty page", () => {
     });
     await page.locator(".problem").waitFor();
     await button("Dismiss").click();
-    expect(await listPatients(system)).toEqual([]);
+    expect(listPatients(system)).toEqual([]);
   });
 
   it("takes a scan that is dropped, under a pseudonym that is made", async () => {
     await drop(halfFace, "jane-doe.obj");
     await page.getByText("9,991 vertices").waitFor();
-    const [patient] = await listPatients(system);
+    const [patient] = listPatients(system);
     expect(patient.displayName).toMatch(/^case-\d{4}-\d\d-\d\d-[a-z0-9]{5}$/);
     expect(await page.locator(".plan-name b").textContent()).toBe(patient.displayName);
     expect(await done()).toEqual([]);
@@ -224,9 +224,9 @@ describe("another face", () => {
     expect(await done()).toEqual([]);
     expect(await button("Undo").isDisabled()).toBe(true);
     expect(page.url()).not.toMatch(/run=/);
-    const patients = await listPatients(system);
+    const patients = listPatients(system);
     expect(patients).toHaveLength(2);
-    for (const { name } of patients) expect(await listScans(system, name)).toHaveLength(1);
+    for (const { name } of patients) expect(listScans(system, name)).toHaveLength(1);
   });
 
   it("does not take the places of a plan that was made on another one", async () => {
@@ -257,7 +257,7 @@ describe("another face", () => {
   });
 
   it("is a case that is opened again as it was left", async () => {
-    const patients = await listPatients(system);
+    const patients = listPatients(system);
     const second = patients.find(({ displayName }) => displayName !== "")!;
     const shown = await page.locator(".plan-name b").textContent();
     const next = patients.find(({ displayName }) => displayName !== shown) ?? second;
@@ -272,7 +272,7 @@ describe("another face", () => {
     await button("Synthetic sample").click();
     await expect.poll(() => page.locator(".plan-name b").textContent(), soon).toBe("synthetic-face");
     await expect.poll(done, soon).toEqual(["✓Face", "✓Tissue", "✓Fat"]);
-    expect(await listPatients(system)).toHaveLength(3);
+    expect(listPatients(system)).toHaveLength(3);
   });
   it("and all went without a mistake in the page", () => expect(errors).toEqual([]));
 });

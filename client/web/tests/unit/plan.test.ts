@@ -147,6 +147,12 @@ describe("violations", () => {
     expect(plainWords("lies at (0.25, -1e-3) of the chart, outside zone 'masseter'", plan)).toBe(
       "lies outside zone 'masseter'",
     );
+    expect(plainWords("has a film cell at (0.5, 0.25) of the chart where no node of the tissue is free", plan)).toBe(
+      "has a film cell where no node of the tissue is free",
+    );
+    expect(plainWords("needs scan_region.bone_scan; max_total_ml is -2, masseter_left of half_face.obj", plan)).toBe(
+      "needs bone scan; max total is -2, masseter, left of half_face.obj",
+    );
     expect(plainWords("is less than spec.films[0].zones[0].disc.radius_mm", plan)).toBe(
       "is less than radius of zone Masseter",
     );

@@ -5,20 +5,32 @@ import { toProblem, type Problem } from "./api/errors";
 
 export const problem = signal<Problem | undefined>(undefined);
 export const notice = signal("");
-export const busy = signal<{ label: string; share: number | undefined } | undefined>(undefined);
+/** what is worth knowing of what was just done, until it is dismissed */
+export const remark = signal("");
+export const busy = signal<{ label: string; share: number | undefined; cancel?: () => void } | undefined>(undefined);
 
-/** Runs something that may take long or fail; says so on the page. Whether it went well. */
+type Tell = (share: number | undefined, label?: string) => void;
+
+/**
+ * Runs something that may take long or fail; says so on the page. Whether it went well.
+ * @param work  with a signal that aborts where somebody cancels it, if `cancellable`
+ */
 export async function attempt(
   label: string,
-  work: (progress: (share: number, label?: string) => void) => Promise<void>,
+  work: (progress: Tell, left: AbortSignal) => Promise<void>,
+  cancellable = false,
 ): Promise<boolean> {
-  busy.value = { label, share: undefined };
+  const leave = new AbortController();
+  const cancel = cancellable ? () => leave.abort() : undefined;
+  busy.value = { label, share: undefined, cancel };
   problem.value = undefined;
   try {
-    await work((share, now) => (busy.value = { label: now ?? label, share }));
+    await work((share, now) => {
+      if (!leave.signal.aborted) busy.value = { label: now ?? label, share, cancel };
+    }, leave.signal);
     return true;
   } catch (error) {
-    tell(error);
+    if (!leave.signal.aborted) tell(error);
     return false;
   } finally {
     busy.value = undefined;

@@ -3,12 +3,14 @@ import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { setToken, token } from "./api/client";
 import { Dashboard } from "./dashboard/dashboard";
-import { openSample } from "./plan/actions";
-import { plan } from "./plan/state";
+import { writeAddress } from "./case/address";
+import { address, bindAddress, page } from "./case/restore";
+import { redoChange, undoChange } from "./keyboard";
+import { canRedo, canUndo, patientName, plan } from "./plan/state";
+import { recorded } from "./run/state";
 import { notice } from "./activity";
 import { Planner } from "./planner";
 
-const page = signal(location.hash);
 const asking = signal(false);
 
 function Credentials() {
@@ -39,18 +41,32 @@ function Credentials() {
   );
 }
 
+/** Whose plan it is; of a folder of results that is not known. */
+function CaseName() {
+  const name = recorded.value !== "" ? `results in ${recorded.value}` : plan.value.name;
+  return (
+    <span class="plan-name">
+      {patientName.value !== "" && recorded.value === "" && <b>{patientName.value}</b>} {name}
+    </span>
+  );
+}
+
+function Changes() {
+  return (
+    <span class="changes">
+      <button type="button" class="button small" disabled={!canUndo.value} title="Ctrl+Z" onClick={undoChange}>
+        Undo
+      </button>
+      <button type="button" class="button small" disabled={!canRedo.value} title="Ctrl+Y" onClick={redoChange}>
+        Redo
+      </button>
+    </span>
+  );
+}
+
 export function App() {
-  useEffect(() => {
-    const turn = (): void => void (page.value = location.hash);
-    window.addEventListener("hashchange", turn);
-    if (location.hash === "#sample") {
-      history.replaceState(null, "", "#plan");
-      turn();
-      void openSample();
-    }
-    return () => window.removeEventListener("hashchange", turn);
-  }, []);
-  const onDashboard = page.value === "#dashboard";
+  useEffect(bindAddress, []);
+  const onDashboard = page.value === "dashboard";
   return (
     <>
       <header class="top">
@@ -58,15 +74,16 @@ export function App() {
           <img src="./icon.svg" alt="" width="26" height="26" />
           Lipofill
         </span>
-        {!onDashboard && <span class="plan-name">{plan.value.name}</span>}
+        {!onDashboard && <CaseName />}
         <nav aria-label="Pages">
-          <a href="#plan" aria-current={onDashboard ? undefined : "page"}>
+          <a href={writeAddress({ ...address.value, page: "plan" })} aria-current={onDashboard ? undefined : "page"}>
             Planner
           </a>
           <a href="#dashboard" aria-current={onDashboard ? "page" : undefined}>
             Dashboard
           </a>
         </nav>
+        {!onDashboard && <Changes />}
         {notice.value && (
           <span class="notice" role="alert">
             {notice.value}

@@ -1,10 +1,9 @@
-// Keys: 1 to 4 the steps, space run or pause, arrows through time, Esc out of a tool.
+// Keys: 1 to 5 the steps, Ctrl+Z back, space run or pause, arrows through time, Esc out of a tool.
 import { lookAt, runOrPause } from "./run/run";
 import { frame, hasResult, store } from "./run/state";
 import { brushMm, tool } from "./plan/tools";
-import { compare, quantity, step, type Step } from "./stage/stage_state";
-
-const steps: Step[] = ["face", "tissue", "fat", "run"];
+import { redo, undo } from "./plan/state";
+import { compare, quantity, step, stepNames } from "./stage/stage_state";
 
 function stepThroughTime(by: number): void {
   const all = store.frames;
@@ -13,9 +12,30 @@ function stepThroughTime(by: number): void {
   if (next) lookAt(next.timeS);
 }
 
+/** Ctrl+Z, Ctrl+Shift+Z, Ctrl+Y. What is being typed has its own. */
+function changeBack(event: KeyboardEvent, target: HTMLElement): void {
+  const key = event.key.toLowerCase();
+  if (event.altKey || target.closest("[data-typing], dialog")) return;
+  if (key === "y" || (key === "z" && event.shiftKey)) redoChange();
+  else if (key === "z") undoChange();
+  else return;
+  event.preventDefault();
+}
+
+/** A tool may be at something that is no longer there. */
+export function undoChange(): void {
+  tool.value = { kind: "turn" };
+  undo();
+}
+export function redoChange(): void {
+  tool.value = { kind: "turn" };
+  redo();
+}
+
 export function onKey(event: KeyboardEvent): void {
   const target = event.target as HTMLElement;
-  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  if (event.ctrlKey || event.metaKey) return changeBack(event, target);
+  if (event.altKey) return;
   if (event.key === "Escape") tool.value = { kind: "turn" };
   if (target.closest("input[type=number], input[type=text], input[type=password], select, dialog")) return;
   const itsOwn =
@@ -25,7 +45,7 @@ export function onKey(event: KeyboardEvent): void {
         ? "input[type=range]"
         : "";
   if (itsOwn && target.closest(itsOwn)) return;
-  if (/^[1-4]$/.test(event.key)) step.value = steps[Number(event.key) - 1];
+  if (/^[1-5]$/.test(event.key)) step.value = stepNames[Number(event.key) - 1];
   else if (event.key === " ") void runOrPause();
   else if (event.key === "ArrowLeft" && hasResult.value) stepThroughTime(-1);
   else if (event.key === "ArrowRight" && hasResult.value) stepThroughTime(1);

@@ -1,15 +1,22 @@
-// The planner: four steps beside the picture.
+// The planner: five steps beside the picture.
 import { effect } from "@preact/signals";
 import { useEffect } from "preact/hooks";
-import { busy, problem } from "./activity";
+import { busy, problem, remark } from "./activity";
 import { bindPlanCheck } from "./plan/check";
-import { modelIsCurrent, scan, violations, zones } from "./plan/state";
+import { plainWords, sentence } from "./plan/field_words";
+import { modelIsCurrent, plan, violations } from "./plan/state";
+import { elsewhere } from "./plan/violations";
 import { tool } from "./plan/tools";
-import { connection, distance, hasResult } from "./run/state";
+import { connection, distance, refusals } from "./run/state";
 import { bindShape } from "./shape/plan_volumes";
 import { FacePanel } from "./panels/face_panel";
 import { FatPanel } from "./panels/fat_panel";
 import { Figures } from "./panels/figures";
+import { GoalPanel } from "./panels/goal_panel";
+import { Invitation } from "./panels/invitation";
+import { faceIsDone, fatIsDone, isEmpty, runIsDone } from "./progress";
+import { deficit, deficitIsOld } from "./target/state";
+import { complaintsElsewhere, complaintsHere } from "./widgets/complaints";
 import { onKey } from "./keyboard";
 import { RunPanel } from "./panels/run_panel";
 import { Stage } from "./stage/stage";
@@ -18,10 +25,11 @@ import { Timeline } from "./stage/timeline";
 import { TissuePanel } from "./panels/tissue_panel";
 
 const steps: { key: Step; label: string; done: () => boolean }[] = [
-  { key: "face", label: "Face", done: () => scan.value !== undefined },
+  { key: "face", label: "Face", done: () => faceIsDone.value },
+  { key: "goal", label: "Goal", done: () => deficit.value !== undefined && !deficitIsOld.value },
   { key: "tissue", label: "Tissue", done: () => modelIsCurrent.value },
-  { key: "fat", label: "Fat", done: () => zones.value.length > 0 },
-  { key: "run", label: "Run", done: () => hasResult.value },
+  { key: "fat", label: "Fat", done: () => fatIsDone.value },
+  { key: "run", label: "Run", done: () => runIsDone.value },
 ];
 
 function Steps() {
@@ -55,26 +63,46 @@ function Busy() {
     <div class="busy" role="status">
       <span>{now.label}…</span>
       <progress value={now.share} max={1} aria-label={now.label} />
+      {now.cancel && (
+        <button type="button" class="button small" onClick={now.cancel}>
+          Cancel
+        </button>
+      )}
     </div>
   );
 }
 
+/** What stands beside its field is not said again. */
 function Problem() {
   const now = problem.value;
   if (!now) return null;
+  const ofFields = now.violations.length > 0;
+  const said = violations.value.length > 0 || refusals.value.length > 0;
+  const list = said ? complaintsElsewhere.value : elsewhere(now.violations, [], plan.value);
   return (
     <div class="problem" role="alert">
-      <p>{now.message}</p>
-      {now.violations.length > 0 && (
+      <p>{ofFields ? "This cannot be done as it is:" : sentence(plainWords(now.message, plan.value))}</p>
+      {ofFields && said && complaintsHere.value && <p>What has to change is marked in the form beside the picture.</p>}
+      {ofFields && list.length > 0 && (
         <ul>
-          {now.violations.map(({ field, description }) => (
-            <li key={field}>
-              <code>{field}</code> {description}
-            </li>
+          {list.map((text) => (
+            <li key={text}>{text}</li>
           ))}
         </ul>
       )}
       <button type="button" class="icon" aria-label="Dismiss" onClick={() => (problem.value = undefined)}>
+        ×
+      </button>
+    </div>
+  );
+}
+
+function Remark() {
+  if (remark.value === "") return null;
+  return (
+    <div class="remark" role="status">
+      <p>{remark.value}</p>
+      <button type="button" class="icon" aria-label="Dismiss" onClick={() => (remark.value = "")}>
         ×
       </button>
     </div>
@@ -103,6 +131,7 @@ export function Planner() {
         <Steps />
         <div class="panel-body" data-violations={violations.value.length}>
           {now === "face" && <FacePanel />}
+          {now === "goal" && <GoalPanel />}
           {now === "tissue" && <TissuePanel />}
           {now === "fat" && <FatPanel />}
           {now === "run" && <RunPanel />}
@@ -110,6 +139,7 @@ export function Planner() {
       </div>
       <div class="middle">
         <Stage />
+        {isEmpty.value && now !== "run" && <Invitation />}
         {now === "run" && <Timeline />}
         {connection.value === "lost" && (
           <div class="lost" role="status">
@@ -118,6 +148,7 @@ export function Planner() {
         )}
         <Busy />
         <Problem />
+        <Remark />
       </div>
       {now === "run" && <Figures />}
     </main>

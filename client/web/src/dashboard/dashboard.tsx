@@ -5,8 +5,7 @@ import { Simulation_State, type Simulation } from "@wire/simulation_pb";
 import { simulations } from "../api/client";
 import { toProblem } from "../api/errors";
 import { stateClass, stateWord } from "../run/exports";
-import { openExisting } from "../run/run";
-import { step } from "../stage/stage_state";
+import { writeAddress } from "../case/address";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { Thumbnails } from "./thumbnails";
 
@@ -160,13 +159,7 @@ function Entry({ card: { simulation, stepsPerS } }: { card: Card }) {
           </div>
         </dl>
       </div>
-      <a
-        href="#plan"
-        onClick={() => {
-          step.value = "run";
-          void openExisting(simulation);
-        }}
-      >
+      <a href={writeAddress({ page: "plan", step: "run", patient: "", scan: "", run: simulation.name })}>
         Open in the planner
       </a>
       {simulation.state === Simulation_State.FAILED && <p class="complaint">{simulation.reason}</p>}

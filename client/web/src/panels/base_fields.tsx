@@ -7,7 +7,7 @@ import { NumberField, SelectField } from "../widgets/fields";
 const kinds = [
   { value: Support_Kind.KIND_UNSPECIFIED, label: "As the tissue figures say" },
   { value: Support_Kind.BY_REGION, label: "Bone where the face has bone" },
-  { value: Support_Kind.CLAMPED, label: "Bone everywhere (the paper's)" },
+  { value: Support_Kind.CLAMPED, label: "Bone everywhere" },
   { value: Support_Kind.ELASTIC, label: "Springs everywhere" },
 ];
 

@@ -7,7 +7,7 @@ import { NumberField, SelectField } from "../widgets/fields";
 const bonds = [
   { value: "region", label: "Septa by region (assumed figures)" },
   { value: "attachment", label: "Elastic, with figures of your own" },
-  { value: "rigid", label: "Bonded at the outline (the paper's)" },
+  { value: "rigid", label: "Bonded at the outline" },
 ];
 
 export function EdgeFields({ film }: { film: number }) {

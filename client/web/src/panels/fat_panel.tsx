@@ -1,13 +1,16 @@
-// Step 3: where the fat goes, how much and how fast, and what holds the tissue together.
+// Step 4: where the fat goes, how much and how fast, and what holds the tissue together.
 import { create } from "@bufbuild/protobuf";
 import { FatPreset, FatSchema, LigamentSchema, Pace, TimeControl_Goal, TimeControlSchema } from "@wire/simulation_pb";
 import { ligamentNames, readable } from "../plan/anatomy";
 import { remarks } from "../plan/check";
+import { fieldWords, plainWords } from "../plan/field_words";
 import { freeName, newFilm } from "../plan/new_plan";
 import { editPlan, modelIsCurrent, plan, region } from "../plan/state";
 import { tool } from "../plan/tools";
 import { CheckField, Complaint, NumberField, Section, SelectField } from "../widgets/fields";
+import { DeliverySection } from "./delivery_section";
 import { Injections } from "./injections";
+import { ProposalSection } from "./proposal_section";
 import { FilmEditor } from "./zone_list";
 
 function Planes() {
@@ -58,7 +61,7 @@ function Fat() {
           editPlan(({ simulation }) => (simulation!.fat = create(FatSchema, { preset: Number(value) })))
         }
         options={[
-          { value: FatPreset.NEWTONIAN, label: "Newtonian (the paper's)" },
+          { value: FatPreset.NEWTONIAN, label: "Evenly viscous" },
           { value: FatPreset.COLEMAN, label: "Coleman" },
           { value: FatPreset.NANOFAT, label: "Nanofat" },
           { value: FatPreset.SVF_GEL, label: "SVF gel" },
@@ -205,7 +208,7 @@ function Remarks() {
     <>
       {remarks.value.map(({ field, description }) => (
         <p class="hint" key={field}>
-          {field.replace(/^simulation\./, "")} {description}.
+          {fieldWords(field, plan.value)} {plainWords(description, plan.value)}.
         </p>
       ))}
     </>
@@ -216,8 +219,10 @@ export function FatPanel() {
   return (
     <>
       {!modelIsCurrent.value && <p class="hint">The model is not built yet: zones show once it is.</p>}
+      <ProposalSection />
       <Planes />
       <Injections />
+      <DeliverySection />
       <Fat />
       <Ligaments />
       <Time />

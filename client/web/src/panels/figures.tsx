@@ -1,4 +1,6 @@
 // The figures a surgeon looks for first, and how they came about.
+import { plainWords } from "../plan/field_words";
+import { plan } from "../plan/state";
 import { lookAt } from "../run/run";
 import { rows, simulation, timeShown } from "../run/state";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
@@ -49,6 +51,13 @@ function rowNow() {
   return all[low];
 }
 
+/** What was to be taken out, and was not there. */
+function NotTakenOut() {
+  const owed = -(simulation.value?.summary?.undeliveredMl ?? 0);
+  if (owed < 0.005) return null;
+  return <p class="warning">{owed.toFixed(2)} mL could not be taken out: there is no more fat to take.</p>;
+}
+
 function Zones() {
   const zones = simulation.value?.summary?.zones ?? [];
   if (zones.length === 0) return null;
@@ -64,7 +73,7 @@ function Remarks() {
       <h3>Remarks</h3>
       <ul>
         {remarks.map((remark) => (
-          <li key={remark}>{remark}</li>
+          <li key={remark}>{plainWords(remark, plan.value)}</li>
         ))}
       </ul>
     </section>
@@ -90,6 +99,7 @@ export function Figures() {
       />
       <Figure label="Skin rises" value={(row?.skinMaxDisplacementMm ?? 0).toFixed(1)} unit="mm" />
       <Figure label="Simulated time" value={(timeShown.value ?? row?.timeS ?? 0).toFixed(1)} unit="s" />
+      <NotTakenOut />
       <Zones />
       <Remarks />
       {all.length > 1 && (

@@ -6,6 +6,7 @@ import { editPlan, plan, zones } from "../plan/state";
 import { tool } from "../plan/tools";
 import { dragVolume, mostOf, releaseVolume } from "../shape/plan_volumes";
 import { dragged } from "../shape/state";
+import { Many, mostShown } from "./many_injections";
 import { Complaint, NumberField, Section, SelectField } from "../widgets/fields";
 import { VolumeSlider } from "../widgets/volume_slider";
 
@@ -48,6 +49,18 @@ function Slider({ injection, index }: OfInjection) {
   );
 }
 
+/** What a volume below 0 takes out. */
+function Removal({ injection, index }: OfInjection) {
+  const volumeMl = volumeOf(injection, index) ?? 0;
+  if (volumeMl >= 0) return null;
+  return (
+    <p class="hint">
+      Takes {(-volumeMl).toFixed(2)} mL of fat out of {readable(injection.zone)}, as far as there is any by then: what
+      cannot be taken out is said with the result.
+    </p>
+  );
+}
+
 function Total() {
   const injections = plan.value.simulation?.injections ?? [];
   const total = injections.reduce((sum, injection, index) => sum + (volumeOf(injection, index) ?? 0), 0);
@@ -57,6 +70,13 @@ function Total() {
 export function Injections() {
   const injections = plan.value.simulation?.injections ?? [];
   const names = zones.value.map(({ zone }) => zone.name);
+  if (injections.length > mostShown)
+    return (
+      <Section title="Injections" aside={<Total />}>
+        <Many injections={injections} />
+        <Complaint field="simulation.injections" />
+      </Section>
+    );
   return (
     <Section title="Injections" aside={<Total />}>
       {injections.map((injection, index) => {
@@ -84,6 +104,7 @@ export function Injections() {
               />
             </div>
             <Slider injection={injection} index={index} />
+            <Removal injection={injection} index={index} />
             <div class="row">
               <button
                 type="button"

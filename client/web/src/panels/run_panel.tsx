@@ -1,4 +1,4 @@
-// Step 4: run it, steer it, take the result home.
+// Step 5: run it, steer it, take the result home.
 import { signal } from "@preact/signals";
 import { create } from "@bufbuild/protobuf";
 import { ScanUnit } from "@wire/plan_pb";
@@ -6,11 +6,12 @@ import { InjectionSchema, Simulation_State } from "@wire/simulation_pb";
 import { simulations } from "../api/client";
 import { uploadScan } from "../api/upload";
 import { readable } from "../plan/anatomy";
-import { canRun, scanFile } from "../plan/state";
+import { plainWords } from "../plan/field_words";
+import { canRun, plan, scanFile } from "../plan/state";
 import { attempt, busy } from "../activity";
 import { liveSite, tool } from "../plan/tools";
 import { stateClass, stateWord } from "../run/exports";
-import { close, command, inject, run } from "../run/run";
+import { close, command, inject, planHasChanged, run } from "../run/run";
 import { distance, hasResult, isRunning, isUnderWay, recorded, simulation, state } from "../run/state";
 import { FileButton, NumberField, Section, SelectField } from "../widgets/fields";
 import { quantity } from "../stage/stage_state";
@@ -68,8 +69,13 @@ function Controls() {
           </button>
         )}
       </div>
+      {planHasChanged.value && (
+        <p class="warning">The plan has changed since this run: its results are of the plan before.</p>
+      )}
       {simulation.value?.reason && (
-        <p class={now === Simulation_State.FAILED ? "complaint" : "quiet"}>{simulation.value.reason}</p>
+        <p class={now === Simulation_State.FAILED ? "complaint" : "quiet"}>
+          {plainWords(simulation.value.reason, plan.value)}
+        </p>
       )}
       {simulation.value?.summary?.preview && (
         <p class="quiet">
@@ -135,7 +141,7 @@ function InjectMore() {
 }
 
 async function compareWith(file: File): Promise<void> {
-  await attempt("Measuring the distance to the target", async (progress) => {
+  await attempt("Measuring the distance to the goal", async (progress) => {
     const { name, spec } = simulation.value!;
     const parent = spec!.model.split("/models/")[0];
     const target = await uploadScan(
@@ -155,30 +161,30 @@ function Target() {
   const result = distance.value?.simulatedToTarget;
   const before = distance.value?.beforeToTarget;
   return (
-    <Section title="Target">
+    <Section title="Goal">
       <FileButton label="Compare with a scan…" accept=".obj,.ply,.stl" onFiles={([file]) => void compareWith(file)} />
       {result && before && (
         <table class="figures-table">
           <thead>
             <tr>
-              <th />
-              <th>before</th>
-              <th>simulated</th>
+              <td />
+              <th scope="col">before</th>
+              <th scope="col">simulated</th>
             </tr>
           </thead>
           <tbody>
             <tr>
-              <th>Mean</th>
+              <th scope="row">Mean</th>
               <td>{before.meanMm.toFixed(2)}</td>
               <td>{result.meanMm.toFixed(2)} mm</td>
             </tr>
             <tr>
-              <th>RMS</th>
+              <th scope="row">RMS</th>
               <td>{before.rmsMm.toFixed(2)}</td>
               <td>{result.rmsMm.toFixed(2)} mm</td>
             </tr>
             <tr>
-              <th>95th percentile</th>
+              <th scope="row">95 of 100 within</th>
               <td>{before.p95Mm.toFixed(2)}</td>
               <td>{result.p95Mm.toFixed(2)} mm</td>
             </tr>

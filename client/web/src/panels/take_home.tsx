@@ -3,10 +3,10 @@ import { signal } from "@preact/signals";
 import type { Simulation } from "@wire/simulation_pb";
 import { simulations } from "../api/client";
 import { writePlan } from "../plan/plan_file";
-import { canRun, plan, scanFile } from "../plan/state";
+import { canRun, fileOfScan, plan, scanFile } from "../plan/state";
 import { attempt, tell } from "../activity";
 import { save, stateWord, surfaceObj } from "../run/exports";
-import { openExisting } from "../run/run";
+import { openRun } from "../case/open";
 import { hasResult, rows, simulation } from "../run/state";
 import { writeSeries } from "../run/series_csv";
 import { FileButton, Section, SelectField } from "../widgets/fields";
@@ -34,7 +34,7 @@ export function Exports() {
           type="button"
           class="button"
           disabled={!canRun.value}
-          onClick={() => save(`${name}.json`, writePlan(plan.value, scanFile.value.name, scanFile.value.unit))}
+          onClick={() => save(`${name}.json`, writePlan(plan.value, fileOfScan.value, scanFile.value.unit))}
         >
           Plan
         </button>
@@ -59,7 +59,7 @@ export function Exports() {
         </button>
       </div>
       <p class="quiet">
-        The plan runs with <code>lipofill run</code> beside {scanFile.value.name}.
+        The plan runs with <code>lipofill run</code> beside {fileOfScan.value}.
       </p>
     </Section>
   );
@@ -83,7 +83,7 @@ export function Recorded() {
           value={known.value.some(({ name }) => name === simulation.value?.name) ? simulation.value!.name : ""}
           onChange={(value) => {
             const next = known.value.find(({ name }) => name === value);
-            if (next) void openExisting(next);
+            if (next) void openRun(next.name);
           }}
           options={[
             { value: "", label: "Choose…" },

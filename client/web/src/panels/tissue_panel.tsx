@@ -1,4 +1,4 @@
-// Step 2: which part of the face, of what tissue, in how many elements.
+// Step 3: which part of the face, of what tissue, in how many elements.
 import { signal } from "@preact/signals";
 import { TissueLayer_Kind, TissueLayer_Law, TissueLayerSchema, TissuePreset } from "@wire/model_pb";
 import { create } from "@bufbuild/protobuf";
@@ -103,8 +103,8 @@ const kinds = [
 
 const laws = [
   { value: TissueLayer_Law.LAW_UNSPECIFIED, label: "As the tissue figures say" },
-  { value: TissueLayer_Law.NEO_HOOKEAN, label: "Neo-Hookean (keeps its volume)" },
-  { value: TissueLayer_Law.COROTATIONAL, label: "Corotational (the paper's)" },
+  { value: TissueLayer_Law.NEO_HOOKEAN, label: "Keeps its volume (neo-Hookean)" },
+  { value: TissueLayer_Law.COROTATIONAL, label: "Simple (corotational)" },
 ];
 
 function Layers() {
@@ -116,8 +116,8 @@ function Layers() {
         value={plan.value.model?.tissuePreset ?? 0}
         field="model.tissue_preset"
         options={[
-          { value: TissuePreset.PAPER, label: "Paper (stiff muscle)" },
-          { value: TissuePreset.ELASTOGRAPHY, label: "Elastography (tissue at rest)" },
+          { value: TissuePreset.PAPER, label: "Firm muscle" },
+          { value: TissuePreset.ELASTOGRAPHY, label: "Muscle at rest, as elastography measures it" },
           { value: 0, label: "As each layer says" },
         ]}
         onChange={(value) => editPlan(({ model: spec }) => (spec!.tissuePreset = Number(value)))}

@@ -159,6 +159,9 @@ export function takeRegionFromZones({ model, simulation }: Plan): void {
 
 /** "mandibular_angle_left" for people. */
 export function readable(name: string): string {
-  const text = name.replace(/_(left|right)$/, ", $1").replace(/_/g, " ");
+  const text = name
+    .replace(/_(left|right)$/, ", $1")
+    .replace(/_/g, " ")
+    .replace(/\b(soof|smas)\b/g, (short) => short.toUpperCase());
   return text.charAt(0).toUpperCase() + text.slice(1);
 }

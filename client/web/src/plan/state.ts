@@ -7,18 +7,23 @@ import { PlanSchema, ScanUnit, type Plan } from "@wire/plan_pb";
 import type { Violation } from "../api/errors";
 import type { Mesh } from "../api/meshes";
 import { Chart } from "./chart";
+import { History } from "./history";
 import { newPlan } from "./new_plan";
 
 export const plan = signal<Plan>(newPlan());
+/** patients/{patient}; empty: none yet */
 export const patient = signal("");
+/** its pseudonym */
+export const patientName = signal("");
 export const scan = signal<Scan | undefined>(undefined);
 export const scanMesh = signal<Mesh | undefined>(undefined);
-/** name and unit of the file the scan came from, for the plan file */
-export const scanFile = signal({ name: "face.obj", unit: ScanUnit.MILLIMETRE });
+/** name and unit of the file the scan came from; without a name where that is not known */
+export const scanFile = signal({ name: "", unit: ScanUnit.MILLIMETRE });
+export const fileOfScan = computed(() => scanFile.value.name || "face.obj");
 export const model = signal<Model | undefined>(undefined);
 export const modelMeshes = signal<Map<string, Mesh> | undefined>(undefined);
 /** of the specification that `model` was built from */
-const builtFrom = signal("");
+export const builtFrom = signal("");
 
 /** what the daemon has against the plan */
 export const violations = signal<Violation[]>([]);
@@ -41,16 +46,43 @@ const specText = computed(() => (plan.value.model ? toJsonString(ModelSpecSchema
 /** Whether the model is the one that the plan describes. */
 export const modelIsCurrent = computed(() => model.value !== undefined && builtFrom.value === specText.value);
 
-export function editPlan(change: (next: Plan) => void): void {
+const history = new History<Plan>();
+export const canUndo = computed(() => history.canUndo);
+export const canRedo = computed(() => history.canRedo);
+
+/** @param stroke  edits with the same one are taken back together, as those of a stroke of the brush */
+export function editPlan(change: (next: Plan) => void, stroke?: unknown): void {
   const next = clone(PlanSchema, plan.value);
   change(next);
+  replacePlan(next, stroke);
+}
+
+export function replacePlan(next: Plan, stroke?: unknown): void {
+  history.add(plan.value, stroke);
   plan.value = next;
 }
 
-export function setModel(built: Model | undefined, meshes: Map<string, Mesh> | undefined): void {
+/** A plan of another face: the changes of the one before are not its own. */
+export function startPlan(next: Plan): void {
+  history.forget();
+  plan.value = next;
+}
+
+function goTo(next: Plan | undefined): void {
+  if (next === undefined) return;
+  batch(() => {
+    plan.value = next;
+    violations.value = [];
+  });
+}
+export const undo = (): void => goTo(history.undo(plan.value));
+export const redo = (): void => goTo(history.redo(plan.value));
+
+/** @param from  the specification that the model was built from; absent: the plan's */
+export function setModel(built: Model | undefined, meshes: Map<string, Mesh> | undefined, from?: string): void {
   batch(() => {
     modelMeshes.value = meshes;
     model.value = built;
-    builtFrom.value = built === undefined ? "" : specText.value;
+    builtFrom.value = built === undefined ? "" : (from ?? specText.value);
   });
 }

@@ -86,8 +86,8 @@ export function click(at: Point): void {
   tool.value = { kind: "turn" };
 }
 
-/** A dab of the brush; whether the zone changed. */
-export function dab(at: Point): boolean {
+/** A dab of the brush; whether the zone changed. Dabs of one stroke are taken back together. */
+export function dab(at: Point, stroke: unknown): boolean {
   const now = tool.value;
   const over = chart.value;
   if (now.kind !== "paint" || over === undefined) return false;
@@ -99,6 +99,7 @@ export function dab(at: Point): boolean {
   if (!over.brush(samples, at, brushMm.value, now.erase ? 0 : 1)) return false;
   editPlan(
     ({ simulation }) => (simulation!.films[now.film].zones[now.zone].shape = { case: "painted", value: samples }),
+    stroke,
   );
   return true;
 }

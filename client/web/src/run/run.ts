@@ -1,16 +1,22 @@
 // What is done with the simulation on the page: created from the plan, steered, watched; or one
 // that is over, opened.
-import { batch } from "@preact/signals";
+import { batch, computed } from "@preact/signals";
+import { toJsonString } from "@bufbuild/protobuf";
 import { Code, ConnectError } from "@connectrpc/connect";
-import { Simulation_State, type Injection, type SeriesRow, type Simulation } from "@wire/simulation_pb";
+import {
+  SimulationSpecSchema,
+  Simulation_State,
+  type Injection,
+  type SeriesRow,
+  type Simulation,
+} from "@wire/simulation_pb";
 import { attempt, tell } from "../activity";
-import { newId, patients, simulations } from "../api/client";
+import { newId, simulations } from "../api/client";
 import { toProblem } from "../api/errors";
 import { watch, type Listener, type Seen } from "../api/watch";
 import { build, simulationSpec } from "../plan/actions";
-import { modelIsCurrent, plan, violations } from "../plan/state";
+import { editPlan, model, modelIsCurrent, plan, violations } from "../plan/state";
 import { toPlanFields } from "../plan/violations";
-import { axesOf } from "../plan/landmarks";
 import {
   connection,
   distance,
@@ -20,6 +26,7 @@ import {
   isUnderWay,
   lookedAt,
   meshes,
+  planOfRun,
   readableMs,
   recorded,
   refusals,
@@ -66,6 +73,14 @@ const listener: Listener = {
   },
 };
 
+/** The plan as a run would have it. */
+export const runText = computed(() => {
+  const { simulation: spec } = plan.value;
+  return `${model.value?.name ?? ""} ${modelIsCurrent.value} ${spec ? toJsonString(SimulationSpecSchema, { ...spec, model: "" }) : ""}`;
+});
+/** The result is of another plan than the one on the page. */
+export const planHasChanged = computed(() => planOfRun.value !== "" && planOfRun.value !== runText.value);
+
 /** Forgets what is shown; the simulation itself goes on. */
 export function close(): void {
   leave.abort();
@@ -80,7 +95,7 @@ export function close(): void {
       undefined,
       "",
     ];
-    [timeShown.value, runAxes.value, distance.value] = [undefined, undefined, undefined];
+    [timeShown.value, runAxes.value, distance.value, planOfRun.value] = [undefined, undefined, undefined, ""];
     [rows.value, refusals.value, skipped.value, connection.value] = [[], [], 0, "idle"];
   });
 }
@@ -140,20 +155,6 @@ export function open(next: Simulation, face = "scan"): void {
   following = follow(next.name, face);
 }
 
-/** Shows one that this page has not begun, upright as its model says. */
-export async function openExisting(next: Simulation): Promise<void> {
-  open(next);
-  try {
-    const { spec } = await patients.getModel({
-      name: (await simulations.getSimulation({ name: next.name })).spec?.model ?? "",
-    });
-    if (spec?.geometry.case === "scanRegion")
-      runAxes.value = axesOf(spec.geometry.value.landmarksMm, spec.geometry.value.axes);
-  } catch {
-    // Its model may be gone; its results are not.
-  }
-}
-
 const planFace = (): string => (plan.value.model?.geometry.case === "scanRegion" ? "scan" : "skin");
 
 /** The plan as a simulation that waits for its start. Violations go beside their fields. */
@@ -169,6 +170,7 @@ export async function create(start: boolean): Promise<boolean> {
         await simulations.createSimulation({ requestId: newId(), displayName, spec: simulationSpec(), start }),
         planFace(),
       );
+      planOfRun.value = runText.value;
     } catch (error) {
       violations.value = toPlanFields(toProblem(error).violations, "simulation");
       throw error;
@@ -188,6 +190,13 @@ export async function command(which: Command): Promise<void> {
   }
 }
 
+/** What was injected live is the plan's as well, as long as that is the plan of the run. */
+function recordInjection({ spec }: Simulation): void {
+  if (spec === undefined || planOfRun.value === "" || planHasChanged.value) return;
+  editPlan(({ simulation: into }) => (into!.injections = spec.injections));
+  planOfRun.value = runText.value;
+}
+
 /** A simulation that has settled goes on with the injection, and is followed again. */
 export async function inject(injection: Injection): Promise<boolean> {
   refusals.value = [];
@@ -197,6 +206,7 @@ export async function inject(injection: Injection): Promise<boolean> {
   try {
     const now = await simulations.inject({ name, injection, requestId: newId() });
     if (left.aborted) return true;
+    recordInjection(now);
     simulation.value = now;
     if (over) following = following.then(() => (left.aborted ? undefined : follow(name, faceMesh.value)));
     return true;

@@ -27,12 +27,14 @@ export const skipped = signal(0);
 export const store = new FrameStore();
 /** "scan" or, without one, "skin" */
 export const faceMesh = signal("scan");
-/** the head's axes of a run that is opened, where its model or its folder has them */
+/** the head's axes of a folder of results that is opened, where it has them */
 export const runAxes = signal<Axes | undefined>(undefined);
 /** how near the result is to a target, where it was compared with one */
 export const distance = signal<Evaluation | undefined>(undefined);
 /** what the daemon has against an injection into what runs */
 export const refusals = signal<Violation[]>([]);
+/** the plan that the run is of, as the page had it; empty: not known */
+export const planOfRun = signal("");
 /** a folder of results on this machine */
 export const recorded = signal("");
 
@@ -43,6 +45,7 @@ export const isUnderWay = computed(() => underWay.includes(state.value));
 export const isRunning = computed(
   () => state.value === Simulation_State.RUNNING || state.value === Simulation_State.QUEUED,
 );
+export const runIsOpen = computed(() => simulation.value !== undefined || recorded.value !== "");
 export const hasFrame = computed(() => frame.value !== undefined);
 export const hasResult = computed(
   () => hasFrame.value && (recorded.value !== "" || (simulation.value?.summary?.steps ?? 0n) > 0n),

@@ -83,7 +83,7 @@ export const quantities: Record<Quantity, QuantityInfo> = {
   displacement: { label: "Skin displacement", unit: "mm", factor: 1 },
   pressure: { label: "Fat pressure", unit: "mmHg", factor: mmHgPerPa },
   thickness: { label: "Fat thickness", unit: "mm", factor: 1 },
-  distance: { label: "Distance to target", unit: "mm", factor: 1 },
+  distance: { label: "Distance to the goal", unit: "mm", factor: 1 },
 };
 
 /** A round number at or above. */
@@ -132,4 +132,14 @@ export const zoneColours: Rgb[] = [
   [86, 180, 233],
   [213, 94, 0],
   [120, 94, 160],
+];
+
+/** Of entries of the cannula and their tunnels, on zones of any colour. */
+export const entryColours: Rgb[] = [
+  [150, 20, 60],
+  [20, 60, 150],
+  [90, 40, 0],
+  [0, 80, 60],
+  [90, 30, 120],
+  [40, 40, 40],
 ];

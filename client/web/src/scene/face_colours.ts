@@ -2,7 +2,13 @@
 import { toNumbers } from "../api/arrays";
 import type { Frame } from "../api/watch";
 import { mapFor, paint, quantities, skinColour, type ColourMap, type Quantity } from "./colour_maps";
-import type { Surface } from "./surface";
+
+/** What is coloured a vertex. */
+interface Coloured {
+  readonly count: number;
+  readonly colours: Uint8Array;
+  recolour(): void;
+}
 
 /** Numbers of a frame at the vertices of the face, in the units people read. */
 export interface FaceNumbers {
@@ -58,7 +64,7 @@ export function valuesOf(
 }
 
 export function colourFace(
-  surface: Surface,
+  surface: Coloured,
   quantity: Quantity | "none",
   numbers: FaceNumbers,
   distance: Float32Array | undefined,
@@ -82,6 +88,15 @@ export function colourFace(
     paint(map, value, colours, at);
     if (share < 1)
       for (let c = 0; c < 3; ++c) colours[at + c] = skinColour[c] + share * (colours[at + c] - skinColour[c]);
+  }
+  surface.recolour();
+}
+
+/** Colours a surface by values, a vertex; skin where one is not a number. */
+export function colourBy(surface: Coloured, values: Float32Array, map: ColourMap): void {
+  for (let k = 0; k < surface.count; ++k) {
+    if (Number.isNaN(values[k])) surface.colours.set(skinColour, 3 * k);
+    else paint(map, values[k], surface.colours, 3 * k);
   }
   surface.recolour();
 }

@@ -4,9 +4,10 @@ import type { Mesh } from "../api/meshes";
 import type { Frame } from "../api/watch";
 import type { ColourMap, Quantity, Rgb } from "./colour_maps";
 import { skinColour } from "./colour_maps";
-import { colourFace, FrameReader, largestOf, RunningMap, valuesOf, type FaceNumbers } from "./face_colours";
+import { colourBy, colourFace, FrameReader, largestOf, RunningMap, valuesOf, type FaceNumbers } from "./face_colours";
 import { makeLayers } from "./layers";
 import { Markers } from "./markers";
+import { MovingSurface } from "./moving_surface";
 import { Surface } from "./surface";
 import { castRay, valueAt, type Hit, type Point } from "./surface_geometry";
 import { Viewport } from "./viewport";
@@ -24,10 +25,11 @@ export class FaceScene {
   readonly viewport: Viewport;
   readonly markers: Markers;
   private before: { viewport: Viewport; surface: Surface | undefined } | undefined;
-  private face: Surface | undefined;
+  private face: MovingSurface | undefined;
   private faceMesh: Mesh | undefined;
   private patch: Surface | undefined;
   private patchShown = true;
+  private shownDetail = 1;
   private layers: Surface[] = [];
   private readonly reader = new FrameReader();
   private readonly running = new RunningMap();
@@ -53,14 +55,11 @@ export class FaceScene {
 
   setFace(mesh: Mesh | undefined): void {
     if (mesh === this.faceMesh) return;
-    if (this.face) {
-      this.viewport.remove(this.face.actor);
-      this.face.dispose();
-    }
+    this.face?.dispose();
     [this.faceMesh, this.numbers, this.distance] = [mesh, undefined, undefined];
     this.running.forget();
-    this.face = mesh && new Surface(mesh);
-    if (this.face) this.viewport.add(this.face.actor);
+    this.face = mesh && new MovingSurface(mesh, this.viewport);
+    if (this.face) this.face.coarse = this.shownDetail < 1;
     if (this.before) this.fillBefore();
     this.viewport.request();
   }
@@ -142,6 +141,31 @@ export class FaceScene {
     this.viewport.request();
   }
 
+  /** Colours the face at rest by signed distances, a vertex; not a number where there is none. */
+  showDistances(values: Float32Array, map: ColourMap): void {
+    if (!this.face || values.length !== this.face.count) return;
+    this.numbers = undefined;
+    this.distance = values;
+    this.face.move();
+    colourBy(this.face, values, map);
+    this.viewport.request();
+  }
+
+  /** The signed distance under a place on the screen [mm], where distances are shown. */
+  distanceAt(clientX: number, clientY: number): number | undefined {
+    const hit = this.distance && this.hit(clientX, clientY);
+    if (!hit || !this.face) return undefined;
+    const value = valueAt(this.distance!, this.face.triangles, hit);
+    return Number.isNaN(value) ? undefined : value;
+  }
+
+  /** Less than 1 where a machine is too slow: fewer pixels, and coarser what does not move. */
+  set detail(share: number) {
+    this.viewport.detail = share;
+    this.shownDetail = share;
+    if (this.face) this.face.coarse = share < 1;
+  }
+
   /** The largest displacement shown [mm]. */
   get lift(): number {
     return this.numbers === undefined ? 0 : largestOf(this.numbers.moved);
@@ -150,6 +174,14 @@ export class FaceScene {
   liftView(axes: Axes): View | undefined {
     if (!this.face || !this.numbers) return undefined;
     return liftView(this.face.points, this.face.normals, this.numbers.moved, axes);
+  }
+
+  /** From outside of where most is missing; undefined where nothing is. */
+  missingView(distances: Float32Array, axes: Axes): View | undefined {
+    if (!this.face || distances.length !== this.face.count) return undefined;
+    const missing = distances.map((value) => (value < 0 ? value * value : 0));
+    if (largestOf(missing) === 0) return undefined;
+    return liftView(this.face.points, this.face.normals, missing, axes);
   }
 
   hit(clientX: number, clientY: number): Hit | undefined {

@@ -59,6 +59,11 @@ export class Surface {
     if (displacement === undefined) this.points.set(this.rest);
     else for (let k = 0; k < this.points.length; ++k) this.points[k] = this.rest[k] + displacement[k];
     computeNormals(this.points, this.triangles, this.normals);
+    this.moved();
+  }
+
+  /** Shows points and normals as somebody else has written them. */
+  moved(): void {
     this.data.getPoints().modified();
     this.normalArray.modified();
     this.data.modified();

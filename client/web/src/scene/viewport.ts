@@ -55,7 +55,7 @@ export class Viewport {
     canvas.getContext("webgl2", {
       antialias: hasGraphicsCard(),
       depth: true,
-      alpha: true,
+      alpha: false,
       powerPreference: "high-performance",
     });
     this.gl.setContainer(container);
@@ -140,6 +140,19 @@ export class Viewport {
     const distance = halfHeight / Math.tan(((24 / 2) * Math.PI) / 180);
     this.pose = { focus, up, position: [0, 1, 2].map((c) => focus[c] + distance * direction[c]) as Point };
     this.onCamera(this.pose);
+  }
+
+  /** Turns the camera around what it looks at [degrees]. */
+  turn(azimuth: number, elevation: number): void {
+    const camera = this.renderer.getActiveCamera();
+    camera.azimuth(azimuth);
+    camera.elevation(elevation);
+    camera.orthogonalizeViewUp();
+  }
+
+  /** Comes nearer by a factor above 1, goes away by one below. */
+  approach(factor: number): void {
+    this.renderer.getActiveCamera().dolly(factor);
   }
 
   private scale(): number {

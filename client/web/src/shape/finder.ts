@@ -3,6 +3,8 @@ import { Code, ConnectError } from "@connectrpc/connect";
 import { toProblem } from "../api/errors";
 import { findShape, type Shape, type ShapeRequest } from "../api/find_shape";
 import { Latest } from "../api/latest";
+import { fieldWords, plainWords } from "../plan/field_words";
+import { plan } from "../plan/state";
 import { clear, isFinal, refuse, shapeOf, show, type ShapeOf } from "./state";
 
 interface Question {
@@ -14,7 +16,9 @@ interface Question {
 /** In plain words; the daemon names the field of the plan that has to be stepped. */
 export function wordsOf(error: unknown): string {
   const { message, violations } = toProblem(error);
-  const details = violations.map(({ field, description }) => `${field} ${description}`).join("; ");
+  const details = violations
+    .map(({ field, description }) => `${fieldWords(field, plan.value)} ${plainWords(description, plan.value)}`)
+    .join("; ");
   const said = details === "" ? message : details;
   if (ConnectError.from(error).code !== Code.FailedPrecondition) return said;
   return `This plan has to be run to see its shape: ${said}. The slider changes the plan all the same.`;

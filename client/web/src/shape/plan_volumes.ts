@@ -73,6 +73,16 @@ export function releaseVolume(index: number, volumeMl: number): void {
   });
 }
 
+/** Shows the settled shape of the plan as it is. */
+export function showPlanShape(): void {
+  if (!modelIsCurrent.value) return;
+  forgetShape();
+  beginDrag("plan");
+  textOfShape = planText();
+  askedPlan();
+  findFinal(face(), request());
+}
+
 /** Forgets a shape that is no longer that of the plan or the run, or that a run replaces. */
 export function bindShape(): () => void {
   const run = computed(() => `${simulation.value?.name ?? ""} ${recorded.value}`);

@@ -3,7 +3,7 @@ import { batch, computed, signal } from "@preact/signals";
 import type { FoundShape } from "@wire/simulation_service_pb";
 import type { Shape } from "../api/find_shape";
 import type { Frame } from "../api/watch";
-import { readableMs, recorded, simulation } from "../run/state";
+import { readableMs, runIsOpen } from "../run/state";
 import { step } from "../stage/stage_state";
 
 /** The plan of this page, or the run that it shows with more or less fat. */
@@ -20,8 +20,6 @@ export const isFinal = signal(false);
 export const refusal = signal("");
 /** Volumes under the hand, by the injection's place in the plan [mL]. */
 export const dragged = signal<ReadonlyMap<number, number>>(new Map());
-
-const runIsOpen = computed(() => simulation.value !== undefined || recorded.value !== "");
 
 /** Whose shape is shown: that of the plan gives way to a run where runs are shown. */
 export const shownShapeOf = computed<ShapeOf | undefined>(() => {

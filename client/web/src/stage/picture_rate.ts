@@ -29,9 +29,9 @@ export function countPictures(scene: FaceScene, element: HTMLElement): () => voi
     const came = (1000 * (store.arrived - arrivedBefore)) / (now - since);
     const slow = rate.value < fluent;
     if (following()) {
-      if (shown > 0 && slow) scene.viewport.detail = coarse;
-    } else if (came === 0) scene.viewport.detail = 1;
-    else if (slow && came > 1.3 * rate.value) scene.viewport.detail = coarse;
+      if (shown > 0 && slow) scene.detail = coarse;
+    } else if (came === 0) scene.detail = 1;
+    else if (slow && came > 1.3 * rate.value) scene.detail = coarse;
     [shown, since, arrivedBefore] = [0, now, store.arrived];
   }, lookEveryMs);
   return () => clearInterval(timer);

@@ -35,6 +35,7 @@ export function ScalarBar({ map, quantity }: { map: ColourMap; quantity: Quantit
         <br />
         <span class="quiet">{unit}</span>
       </div>
+      {quantity === "distance" && <div class="bar-end">too much</div>}
       {quantity === "pressure" ? (
         <Bands map={map} />
       ) : (
@@ -46,6 +47,7 @@ export function ScalarBar({ map, quantity }: { map: ColourMap; quantity: Quantit
           ))}
         </div>
       )}
+      {quantity === "distance" && <div class="bar-end below">missing</div>}
     </div>
   );
 }

@@ -1,5 +1,7 @@
 // The figures of a shape that was not run, on the picture.
 import { ZoneTable } from "../panels/zone_table";
+import { plainWords } from "../plan/field_words";
+import { plan } from "../plan/state";
 import { run } from "../run/run";
 import { simulation } from "../run/state";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
@@ -79,7 +81,7 @@ function Remarks({ found, of }: { found: FoundShape; of: ShapeOf }) {
     <section class="remarks" aria-label="Remarks on the shape">
       <ul>
         {remarks.map((remark) => (
-          <li key={remark}>{remark}</li>
+          <li key={remark}>{plainWords(remark, plan.value)}</li>
         ))}
       </ul>
     </section>
@@ -100,7 +102,7 @@ export function ShapeReadout() {
       <h3 role="status">
         {refusal.value !== "" ? "No shape to show" : isFinal.value ? titles[of] : "Finding the settled shape…"}
       </h3>
-      {refusal.value !== "" && <p class="warning">{refusal.value}</p>}
+      {refusal.value !== "" && <p class="warning">{plainWords(refusal.value, plan.value)}</p>}
       {found && <Numbers found={found} of={of} />}
       {found && isFinal.value && <Remarks found={found} of={of} />}
       {of === "plan" && (isFinal.value || refusal.value !== "") && (

@@ -3,6 +3,8 @@ import { computed } from "@preact/signals";
 import { modelMeshes, plan, scanMesh } from "../plan/state";
 import { faceMesh, frame, meshes } from "../run/state";
 import { shapeFrame, shownShapeOf } from "../shape/state";
+import { distanceMap, distances, goalView, targetMesh } from "../target/state";
+import { step } from "./stage_state";
 
 const planFace = computed(() =>
   plan.value.model?.geometry.case === "square" ? modelMeshes.value?.get("skin") : undefined,
@@ -11,10 +13,24 @@ const showsShape = computed(() => shownShapeOf.value !== undefined && shapeFrame
 /** What the zones are painted on would hide it. */
 export const showsPlanShape = computed(() => showsShape.value && shownShapeOf.value === "plan");
 
-/** The face is the run's where there is one, else the scan, else the skin of a plate. */
+/**
+ * The run is seen where runs are: elsewhere places are set on the face as it was scanned. The face
+ * is the scan, else the skin of a plate.
+ */
 export const shownMesh = computed(() => {
-  if (showsPlanShape.value) return planFace.value ?? scanMesh.value;
-  return meshes.value?.get(faceMesh.value) ?? scanMesh.value ?? planFace.value;
+  const face = scanMesh.value ?? planFace.value;
+  if (step.value === "goal" && goalView.value === "target") return targetMesh.value ?? face;
+  if (step.value !== "run" || showsPlanShape.value) return planFace.value ?? face;
+  return meshes.value?.get(faceMesh.value) ?? face;
 });
-export const shownFrame = computed(() => (showsShape.value ? shapeFrame.value : frame.value));
+export const shownFrame = computed(() =>
+  showsShape.value ? shapeFrame.value : step.value === "run" ? frame.value : undefined,
+);
 export const showsFrame = computed(() => shownFrame.value !== undefined && shownMesh.value !== undefined);
+
+/** Signed distances to the goal, a vertex of the face, and their colours. */
+export const shownDistances = computed(() =>
+  step.value === "goal" && goalView.value === "missing" && distances.value && distanceMap.value
+    ? { values: distances.value, map: distanceMap.value }
+    : undefined,
+);

@@ -6,10 +6,11 @@ import { brushMm, tool, toolHint } from "../plan/tools";
 import { FaceScene } from "../scene/face_scene";
 import { bindFace, bindFrame, bindMarkers, bindPatch } from "./stage_bindings";
 import { useCursor } from "./stage_cursor";
-import { compare, map, probe, quantity, shownScene, split } from "./stage_state";
+import { onStageFocus, onStageKey } from "./stage_keys";
+import { compare, goalProbe, keyCursor, map, probe, quantity, shownScene, split } from "./stage_state";
 import { ScalarBar } from "./scalar_bar";
 import { ShapeReadout } from "./shape_readout";
-import { showsFrame } from "./shown";
+import { shownDistances, showsFrame } from "./shown";
 import { ViewTools } from "./view_tools";
 
 function Probe() {
@@ -27,9 +28,25 @@ function Probe() {
       {now.distanceMm !== undefined && (
         <>
           <br />
-          <b>{now.distanceMm.toFixed(2)} mm</b> from the target
+          <b>{now.distanceMm.toFixed(2)} mm</b> from the goal
         </>
       )}
+    </div>
+  );
+}
+
+function KeyCursor() {
+  const at = keyCursor.value;
+  if (!at || tool.value.kind === "turn") return null;
+  return <div class="key-cursor" aria-hidden="true" style={{ left: `${at.x}px`, top: `${at.y}px` }} />;
+}
+
+function GoalProbe() {
+  const now = goalProbe.value;
+  if (!now) return null;
+  return (
+    <div class="probe" style={{ left: `${now.x + 14}px`, top: `${now.y + 14}px` }}>
+      <b>{Math.abs(now.toGoalMm).toFixed(1)} mm</b> {now.toGoalMm < 0 ? "missing" : "too much"}
     </div>
   );
 }
@@ -92,7 +109,10 @@ export function Stage() {
         ref={main}
         tabIndex={0}
         role="application"
-        aria-label="The face, in three dimensions: drag to turn, wheel to come nearer"
+        aria-label="The face, in three dimensions: drag or arrow keys turn it, wheel or plus and minus come nearer; with a tool arrow keys lead it and Enter uses it"
+        onKeyDown={onStageKey}
+        onFocus={onStageFocus}
+        onBlur={() => (keyCursor.value = undefined)}
       />
       {comparing && (
         <>
@@ -110,10 +130,13 @@ export function Stage() {
           </button>
         </div>
       )}
-      {quantity.value !== "none" && map.value && showsFrame.value && (
+      {quantity.value !== "none" && map.value && showsFrame.value && !shownDistances.value && (
         <ScalarBar map={map.value} quantity={quantity.value} />
       )}
+      {shownDistances.value && <ScalarBar map={shownDistances.value.map} quantity="distance" />}
+      <KeyCursor />
       <Probe />
+      <GoalProbe />
       <ShapeReadout />
       <ViewTools />
     </div>

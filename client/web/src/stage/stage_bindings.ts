@@ -2,27 +2,31 @@
 import { effect, signal, untracked } from "@preact/signals";
 import { placedZones, zoneUnderSkin } from "../plan/check";
 import { locate, pointOf } from "../plan/landmarks";
-import { chart, model, modelMeshes, plan, region, scanMesh, zones } from "../plan/state";
+import { chart, model, modelMeshes, plan, region, scan, scanMesh, zones } from "../plan/state";
 import { liveSite, tool } from "../plan/tools";
-import { distance, frame, meshes, simulation } from "../run/state";
+import { distance, frame, meshes, planOfRun, runIsOpen, simulation } from "../run/state";
 import { isFinal, shownShapeOf } from "../shape/state";
-import { zoneColours, type Rgb } from "../scene/colour_maps";
+import { entryColours, zoneColours, type Rgb } from "../scene/colour_maps";
+import type { Delivery } from "@wire/planning_service_pb";
 import type { FaceScene } from "../scene/face_scene";
 import type { Ball, Line } from "../scene/markers";
 import type { Point } from "../scene/surface_geometry";
 import { layerShown, showLayers } from "../panels/tissue_panel";
-import { shownFrame, shownMesh, showsPlanShape } from "./shown";
+import { delivery, deliveryIsOld } from "../target/state";
+import { shownDistances, shownFrame, shownMesh, showsPlanShape } from "./shown";
 import { quantity, step } from "./stage_state";
-import { lookAtFace, lookAtLift, lookAtRegion } from "./view_tools";
+import { lookAtFace, lookAtLift, lookAtMissing, lookAtRegion } from "./view_tools";
 
 type End = () => void;
 
 export function bindFace(scene: FaceScene): End {
+  let of: string | undefined;
   return effect(() => {
     const mesh = shownMesh.value;
-    const first = !scene.hasFace;
+    const isNew = !scene.hasFace || scan.peek()?.name !== of;
     scene.setFace(mesh);
-    if (first && mesh) untracked(() => (chart.value || meshes.value ? lookAtRegion() : lookAtFace("front")));
+    of = scan.peek()?.name;
+    if (isNew && mesh) untracked(() => (chart.value || meshes.value ? lookAtRegion() : lookAtFace("front")));
   });
 }
 
@@ -44,7 +48,8 @@ function zoneColour(vertex: number): Rgb | undefined {
 export function bindPatch(scene: FaceScene): End {
   let lookedAt: unknown;
   const patch = effect(() => {
-    const skin = step.value === "face" ? undefined : modelMeshes.value?.get("skin");
+    const onRegion = step.value !== "face" && step.value !== "goal";
+    const skin = onRegion ? modelMeshes.value?.get("skin") : undefined;
     const shown = step.value !== "run";
     untracked(() => {
       scene.setPatch(shown ? skin : undefined, zoneColour);
@@ -106,6 +111,20 @@ const colour: Record<"landmark" | "active" | "corner" | "site" | "ligament" | "w
   wall: [40, 40, 40],
 };
 
+/** Tunnels lie under the skin: they are drawn on it, a ball where the cannula goes in. */
+function addDelivery(scene: FaceScene, { entries, passes }: Delivery, balls: Ball[], lines: Line[]): void {
+  const colourOf = (entry: number): Rgb => entryColours[entry % entryColours.length];
+  const seen = new Set<string>();
+  for (const { entry, tunnel, pathMm } of passes) {
+    if (seen.has(`${entry} ${tunnel}`)) continue;
+    seen.add(`${entry} ${tunnel}`);
+    lines.push({ points: pathMm.map((point) => withSkin(scene, pointOf(point))), colour: colourOf(entry) });
+  }
+  entries.forEach(({ placeMm }, index) => {
+    if (placeMm) balls.push({ at: withSkin(scene, pointOf(placeMm)), colour: colourOf(index), radius: 2.2 });
+  });
+}
+
 export function bindMarkers(scene: FaceScene): End {
   return effect(() => {
     void [scanMesh.value, carried.value];
@@ -130,7 +149,9 @@ export function bindMarkers(scene: FaceScene): End {
       if (corners.length === 4 && modelMeshes.value === undefined && step.value === "tissue")
         lines.push({ points: [...corners, corners[0]], colour: colour.corner });
     }
-    if (step.value === "fat" || step.value === "run") {
+    // A run of another plan is not on this face.
+    const runIsOther = runIsOpen.value && planOfRun.value === "";
+    if (step.value === "fat" || (step.value === "run" && !runIsOther)) {
       const { injections = [], ligaments = [], films = [] } = plan.value.simulation ?? {};
       for (const { site } of injections) if (site) add(place(site), "site");
       if (liveSite.value) add(place(liveSite.value), "active");
@@ -149,6 +170,7 @@ export function bindMarkers(scene: FaceScene): End {
           along.forEach((at) => add(at, "wall", 0.9));
           lines.push({ points: along, colour: colour.wall });
         }
+        if (delivery.value && !deliveryIsOld.value) addDelivery(scene, delivery.value.list, balls, lines);
       }
     }
     scene.markers.show(balls, lines);
@@ -164,6 +186,11 @@ export function bindFrame(scene: FaceScene): End {
   let shape: unknown;
   const show = (): void => {
     due = 0;
+    const toGoal = shownDistances.value;
+    if (toGoal) {
+      scene.showDistances(toGoal.values, toGoal.map);
+      return scene.viewport.render();
+    }
     scene.show(shownFrame.value, quantity.value);
     const still = showsPlanShape.value && isFinal.value ? shownFrame.value : undefined;
     if (still !== shape) carried.value += 1;
@@ -176,13 +203,22 @@ export function bindFrame(scene: FaceScene): End {
     }
     scene.viewport.render(); // in this refresh, not the next
   };
+  let measured: unknown;
+  const look = effect(() => {
+    const toGoal = shownDistances.value;
+    if (toGoal === undefined || toGoal.values === measured) return;
+    measured = toGoal.values;
+    untracked(lookAtMissing);
+  });
   const end = effect(() => {
-    void [shownFrame.value, quantity.value, shownMesh.value];
+    void [shownFrame.value, quantity.value, shownMesh.value, shownDistances.value];
+    if (shownDistances.value === undefined) scene.forgetDistance();
     if (distance.value) scene.setDistance(distance.value.vertices, distance.value.distanceMm);
     if (due === 0) due = requestAnimationFrame(show);
   });
   return () => {
     cancelAnimationFrame(due);
+    look();
     end();
   };
 }

@@ -3,8 +3,8 @@
 import type { RefObject } from "preact";
 import { useEffect } from "preact/hooks";
 import { click, dab, tool } from "../plan/tools";
-import { shownFrame } from "./shown";
-import { probe, shownScene } from "./stage_state";
+import { shownDistances, shownFrame } from "./shown";
+import { goalProbe, probe, shownScene } from "./stage_state";
 
 /** A press that moved further was a turn of the face. */
 const clickPixels = 4;
@@ -13,15 +13,17 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
   useEffect(() => {
     const element = main.current!;
     const outer = element.parentElement!;
-    let [painting, downX, downY, due] = [false, 0, 0, 0];
+    let [downX, downY, due] = [0, 0, 0];
+    /** of the brush that is down */
+    let stroke: object | undefined;
 
     const leave = (): void => {
       cancelAnimationFrame(due);
-      probe.value = undefined;
+      [probe.value, goalProbe.value] = [undefined, undefined];
     };
     const paint = (event: PointerEvent): void => {
       const hit = shownScene.value?.hitPatch(event.clientX, event.clientY);
-      if (hit) dab(hit.point);
+      if (hit) dab(hit.point, stroke);
     };
     const down = (event: PointerEvent): void => {
       [downX, downY] = [event.clientX, event.clientY];
@@ -30,28 +32,32 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
       if (!shownScene.value?.hitPatch(event.clientX, event.clientY)) return;
       event.stopPropagation();
       outer.setPointerCapture(event.pointerId);
-      painting = true;
+      stroke = {};
       paint(event);
     };
     const move = (event: PointerEvent): void => {
-      if (painting) {
+      if (stroke) {
         event.stopPropagation();
         paint(event);
         return;
       }
-      if (event.buttons !== 0 || shownFrame.value === undefined) return;
+      if (event.buttons !== 0 || (shownFrame.value === undefined && shownDistances.value === undefined)) return;
       if (!(event.target as HTMLElement).closest(".view")) return leave();
       const { clientX, clientY } = event;
       cancelAnimationFrame(due);
       due = requestAnimationFrame(() => {
-        const found = shownScene.value?.probe(clientX, clientY);
+        const scene = shownScene.value;
         const box = outer.getBoundingClientRect();
-        probe.value = found && { ...found, x: clientX - box.left, y: clientY - box.top };
+        const place = { x: clientX - box.left, y: clientY - box.top };
+        const found = scene?.probe(clientX, clientY);
+        probe.value = found && { ...found, ...place };
+        const toGoalMm = shownDistances.value && scene?.distanceAt(clientX, clientY);
+        goalProbe.value = toGoalMm === undefined ? undefined : { toGoalMm, ...place };
       });
     };
     const up = (event: PointerEvent): void => {
-      if (painting) {
-        painting = false;
+      if (stroke) {
+        stroke = undefined;
         event.stopPropagation();
         return;
       }

@@ -4,7 +4,7 @@ import { chart, modelMeshes, plan, region } from "../plan/state";
 import { distance, hasResult, runAxes } from "../run/state";
 import { shownShapeOf } from "../shape/state";
 import { faceView, regionView, type View } from "../scene/views";
-import { showsFrame } from "./shown";
+import { shownDistances, shownMesh, showsFrame } from "./shown";
 import { compare, quantity, shownScene, step, type Compare } from "./stage_state";
 import { Segmented } from "../widgets/fields";
 import type { Quantity } from "../scene/colour_maps";
@@ -25,6 +25,13 @@ export function lookAtLift(): void {
   if (view) look(view);
 }
 
+/** Where most is missing to the goal. */
+export function lookAtMissing(): void {
+  const toGoal = shownDistances.value;
+  const view = toGoal && shownScene.value?.missingView(toGoal.values, axes());
+  if (view) look(view);
+}
+
 export function lookAtRegion(): void {
   const skin = modelMeshes.value?.get("skin");
   const flat = skin !== undefined && plan.value.model?.geometry.case === "square";
@@ -37,9 +44,10 @@ export function ViewTools() {
     { value: "displacement", label: "Displacement" },
     { value: "pressure", label: "Pressure" },
     { value: "thickness", label: "Fat" },
-    ...(distance.value ? [{ value: "distance" as const, label: "Target" }] : []),
+    ...(distance.value ? [{ value: "distance" as const, label: "Goal" }] : []),
     { value: "none", label: "Skin" },
   ];
+  if (!shownMesh.value) return null;
   return (
     <div class="view-tools">
       <div class="row">
@@ -52,6 +60,11 @@ export function ViewTools() {
         <button type="button" class="button small" onClick={() => lookAtFace("left")}>
           Left
         </button>
+        {shownDistances.value && (
+          <button type="button" class="button small" onClick={lookAtMissing}>
+            Missing
+          </button>
+        )}
         {chart.value && (
           <button type="button" class="button small" onClick={lookAtRegion}>
             Region

@@ -1,14 +1,10 @@
 // Parts of forms: each says beside itself what the daemon has against it.
 import type { ComponentChildren } from "preact";
 import { useId, useState } from "preact/hooks";
-import { violations } from "../plan/state";
-import { descriptionFor } from "../plan/violations";
-import { refusals } from "../run/state";
-
-const complaintOf = (field: string | undefined): string =>
-  field === undefined ? "" : descriptionFor(field, [...violations.value, ...refusals.value]);
+import { complaintOf, useFieldOfForm } from "./complaints";
 
 export function Complaint({ field, id }: { field?: string; id?: string }) {
+  useFieldOfForm(field);
   const text = complaintOf(field);
   return text === "" ? null : (
     <p class="complaint" id={id} role="alert">
@@ -47,9 +43,11 @@ export function NumberField({ label, unit, value, field, step, min, max, placeho
           min={min}
           max={max}
           placeholder={placeholder}
+          data-typing={typed === undefined ? undefined : ""}
           aria-invalid={wrong}
           aria-describedby={wrong ? `${id}-complaint` : undefined}
           onInput={(event) => setTyped(event.currentTarget.value)}
+          onBlur={() => setTyped(undefined)}
           onChange={(event) => {
             setTyped(undefined);
             onChange(event.currentTarget.value === "" ? undefined : Number(event.currentTarget.value));
@@ -74,15 +72,22 @@ export function TextField({
   onChange: (value: string) => void;
 }) {
   const id = useId();
+  const [typed, setTyped] = useState<string | undefined>(undefined);
   return (
     <div class="field">
       <label for={id}>{label}</label>
       <input
         id={id}
         type="text"
-        value={value}
+        value={typed ?? value}
         maxLength={63}
-        onChange={(event) => onChange(event.currentTarget.value.trim())}
+        data-typing={typed === undefined ? undefined : ""}
+        onInput={(event) => setTyped(event.currentTarget.value)}
+        onBlur={() => setTyped(undefined)}
+        onChange={(event) => {
+          setTyped(undefined);
+          onChange(event.currentTarget.value.trim());
+        }}
       />
       <Complaint field={field} />
     </div>
@@ -194,13 +199,23 @@ export function Segmented<T extends string>({
 }) {
   return (
     <div class="segmented" role="radiogroup" aria-label={label}>
-      {options.map((option) => (
+      {options.map((option, index) => (
         <button
           type="button"
           role="radio"
           key={option.value}
           aria-checked={option.value === value}
+          tabIndex={option.value === value ? 0 : -1}
           onClick={() => onChange(option.value)}
+          onKeyDown={(event) => {
+            const by = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+            if (by === undefined) return;
+            event.preventDefault();
+            event.stopPropagation();
+            const next = (index + by + options.length) % options.length;
+            onChange(options[next].value);
+            (event.currentTarget.parentElement!.children[next] as HTMLElement).focus();
+          }}
         >
           {option.label}
         </button>

@@ -31,7 +31,7 @@ beforeAll(async () => {
   await page.getByText("9,991 vertices").waitFor();
   await page.getByLabel("From file…").setInputFiles(join(root, "client/examples/faces/half_face.landmarks.json"));
   await page.getByLabel("Open plan…").setInputFiles(longPlan());
-  await page.keyboard.press("4");
+  await page.keyboard.press("5");
   await page.getByRole("button", { name: "▶ Run" }).click();
   await page.locator(".state-running").waitFor({ timeout: 60_000 });
 });

@@ -4,10 +4,11 @@ import { ScanUnit } from "@wire/plan_pb";
 import { aroundOf, cornersOf, takeRegionFromZones } from "../../src/plan/anatomy";
 import { Chart } from "../../src/plan/chart";
 import { locate, parseLandmarks, pointOf, writeLandmarks } from "../../src/plan/landmarks";
-import { freeName, newPlan, setResolution } from "../../src/plan/new_plan";
+import { freeName, newInjection, newPlan, newZone, setResolution } from "../../src/plan/new_plan";
+import { fieldWords, plainWords } from "../../src/plan/field_words";
 import { parsePlan, writePlan } from "../../src/plan/plan_file";
 import { edgeOf } from "../../src/plan/zone_edge";
-import { descriptionFor, toPlanFields } from "../../src/plan/violations";
+import { descriptionFor, elsewhere, toPlanFields } from "../../src/plan/violations";
 
 const examples = new URL("../../../examples/", import.meta.url);
 const landmarkText = readFileSync(new URL("faces/half_face.landmarks.json", examples), "utf8");
@@ -123,8 +124,38 @@ describe("violations", () => {
       ],
       "simulation",
     );
-    expect(descriptionFor("simulation.films[0].zones[1]", all)).toBe("disc.radius_mm is 0 mm");
-    expect(descriptionFor("simulation.films[0].zones[1].disc.radius_mm", all)).toBe("is 0 mm");
-    expect(descriptionFor("simulation.films[0].zones[10]", all)).toBe("");
+    const plan = newPlan();
+    plan.simulation!.films[0].zones = [newZone("masseter", "masseter_left"), newZone("buccal", "buccal_left")];
+    const [zone, radius, films] = ["zones[1]", "zones[1].disc.radius_mm", "films"].map((part) =>
+      part === "films" ? "simulation.films" : `simulation.films[0].${part}`,
+    );
+    expect(descriptionFor(zone, all, [zone], plan)).toBe("Radius of zone Buccal is 0 mm");
+    expect(descriptionFor("simulation.films[0].zones[10]", all, ["simulation.films[0].zones[10]"], plan)).toBe("");
+    // Once, where it is nearest.
+    expect(descriptionFor(radius, all, [films, zone, radius], plan)).toBe("Is 0 mm");
+    expect(descriptionFor(zone, all, [films, zone, radius], plan)).toBe("");
+    expect(descriptionFor(films, all, [films, zone, radius], plan)).toBe("");
+    expect(elsewhere(all, [films, zone], plan)).toEqual(["Model is missing"]);
+  });
+  it("are said in the words of the page", () => {
+    const plan = newPlan();
+    plan.simulation!.films[0].zones = [newZone("masseter", "masseter_left")];
+    plan.simulation!.injections = [newInjection("masseter")];
+    expect(fieldWords("simulation.injections[0].volume_ml", plan)).toBe("Volume of injection 1");
+    expect(fieldWords("simulation.films[0].zones[0]", plan)).toBe("Zone Masseter");
+    expect(fieldWords("model.layers[1].youngs_modulus_kpa", plan)).toBe("Young's modulus of layer Subcutaneous");
+    expect(fieldWords("simulation.films[0].n_xi", plan)).toBe("Resolution of plane under Subcutaneous");
+    expect(plainWords("lies at (0.25, -1e-3) of the chart, outside zone 'masseter'", plan)).toBe(
+      "lies outside zone 'masseter'",
+    );
+    expect(plainWords("has a film cell at (0.5, 0.25) of the chart where no node of the tissue is free", plan)).toBe(
+      "has a film cell where no node of the tissue is free",
+    );
+    expect(plainWords("needs scan_region.bone_scan; max_total_ml is -2, masseter_left of half_face.obj", plan)).toBe(
+      "needs bone scan; max total is -2, masseter, left of half_face.obj",
+    );
+    expect(plainWords("is less than spec.films[0].zones[0].disc.radius_mm", plan)).toBe(
+      "is less than radius of zone Masseter",
+    );
   });
 });

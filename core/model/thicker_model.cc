@@ -34,4 +34,12 @@ std::shared_ptr<const FaceModel> make_thicker(const FaceModel& model, int layer,
   return thicker;
 }
 
+std::shared_ptr<const FaceModel> with_thickness(const FaceModel& model, const Eigen::VectorXd& factors) {
+  std::shared_ptr<const FaceModel> result = make_thicker(model, 0, factors[0] - 1.0);
+  for (Eigen::Index layer = 1; layer < factors.size(); ++layer) {
+    result = make_thicker(*result, static_cast<int>(layer), factors[layer] - 1.0);
+  }
+  return result;
+}
+
 }  // namespace lipofill::model

@@ -13,4 +13,8 @@ namespace lipofill::model {
 /// @param share  small enough that no hexahedron turns inside out
 std::shared_ptr<const FaceModel> make_thicker(const FaceModel& model, int layer, double share);
 
+/// The model with every layer's thickness multiplied by a factor (n_layers), for members of
+/// ensembles. Its hexahedra may be turned inside out where a factor is large.
+std::shared_ptr<const FaceModel> with_thickness(const FaceModel& model, const Eigen::VectorXd& factors);
+
 }  // namespace lipofill::model

@@ -102,6 +102,14 @@ DirectShape::Members DirectShape::begin_ensemble(const SimulationState& from,
   return {{*equilibrium_, target, from.spring_is_intact, kForceTolerance}, target.volume};
 }
 
+equilibrium::Ensemble DirectShape::begin_ensemble(const SimulationState& from, const Eigen::VectorXd& pool_volumes) {
+  return {*equilibrium_, {pool_volumes, lowest_head_}, from.spring_is_intact, kForceTolerance};
+}
+
+Eigen::VectorXd DirectShape::pool_volumes(const SimulationState& from) const {
+  return equilibrium_->pools().sum(volume_with(cells_, from, {}));
+}
+
 equilibrium::PoolTarget DirectShape::target_with(const SimulationState& from,
                                                  const std::vector<Eigen::VectorXd>& injected) const {
   return {equilibrium_->pools().sum(volume_with(cells_, from, injected)), lowest_head_};

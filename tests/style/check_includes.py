@@ -4,7 +4,7 @@
     tests/style/check_includes.py ROOT
 
     core/base <- geometry <- {solid, film, anatomy} <- coupling <- model <- plan <- mechanics
-    <- {step, equilibrium} <- simulation <- {planning, export}
+    <- {step, equilibrium} <- simulation <- {planning, forecast, export}
 
 Then come server on core and proto, and client on proto alone; core sees neither gRPC nor Protobuf.
 
@@ -46,6 +46,9 @@ ALLOWED = {
     "core/planning": BELOW_MODEL
     | {"core/model", "core/plan", "core/mechanics", "core/step", "core/equilibrium", "core/simulation"}
     | {"core/planning"},
+    "core/forecast": BELOW_MODEL
+    | {"core/model", "core/plan", "core/mechanics", "core/step", "core/equilibrium", "core/simulation"}
+    | {"core/forecast"},
     "server/store": {"core/base", "server/store"},
     "server/security": {"core/base", "server/store", "server/security"},
     "server/door": {"core/base", "server/door"},
@@ -53,7 +56,7 @@ ALLOWED = {
     "server/sessions": {"core", "server/store", "server/sessions"},
     "server/wire": RECORDS
     | {"core/base", "core/geometry", "core/anatomy", "core/model", "core/plan", "core/simulation", "core/planning"}
-    | {"proto", "grpc", "server/wire"},
+    | {"core/forecast", "proto", "grpc", "server/wire"},
     "server/backend": BELOW_BACKEND
     | {"core/base", "core/geometry", "core/model", "core/simulation", "core/planning"}
     | {"proto", "server/backend"},
@@ -63,7 +66,7 @@ ALLOWED = {
     | {"proto", "grpc", "server/patients"},
     "server/simulations": BELOW_SERVICES | {"core/base", "core/export"} | {"proto", "grpc", "server/simulations"},
     "server/planning": BELOW_SERVICES
-    | {"core/base", "core/geometry", "core/model", "core/planning"}
+    | {"core/base", "core/geometry", "core/model", "core/planning", "core/forecast"}
     | {"proto", "grpc", "server/planning"},
     "server/frames": BELOW_SERVICES | {"core/base"} | {"proto", "grpc", "server/frames"},
     "server": {"core/base", "core/coupling", "grpc", "server"},

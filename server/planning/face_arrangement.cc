@@ -1,9 +1,5 @@
 #include "server/planning/face_arrangement.h"
 
-#include <Eigen/Core>
-#include <algorithm>
-#include <limits>
-#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -13,7 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "core/base/field_violations.h"
 #include "core/base/units.h"
-#include "core/plan/plan_placement.h"
+#include "core/planning/plan_parts.h"
 #include "server/backend/size_limits.h"
 #include "server/planning/face_merging.h"
 #include "server/wire/names.h"
@@ -25,15 +21,10 @@ namespace {
 
 constexpr int kMaxParts = 16;
 
-/// Zones that come nearer to one another touch [m] (assumed): as far as that the fat of one lifts
-/// the skin of the other, and a model has that much skin around its zones.
-constexpr double kTouching = 12e-3;
-
 /// A part and where it is.
 struct PlacedPart {
   ModelledPart part;
-  std::vector<int> skin;  ///< vertices of the scan that ride on its model, ascending
-  Eigen::Matrix3Xd fat;   ///< the middle of each cell of its zones, on the skin [m]
+  planning::PartPlace place;
 };
 
 absl::Status check_request(Backend& backend, const v1::ArrangeFaceRequest& request) {
@@ -66,19 +57,6 @@ absl::Status check_request(Backend& backend, const v1::ArrangeFaceRequest& reque
   return absl::OkStatus();
 }
 
-/// The middle of each cell of a film, on the skin at rest.
-Eigen::Matrix3Xd find_middles(const geometry::LayeredGrid& grid, const film::FilmGrid& film) {
-  const Eigen::Matrix3Xd corners = plan::vertices_on_skin(grid, film);
-  Eigen::Matrix3Xd middles(3, film.n_cells());
-  for (int cell = 0; cell < film.n_cells(); ++cell) {
-    const int slot = film.slot_of_cell[static_cast<size_t>(cell)];
-    const int i = slot % film.n_xi, j = slot / film.n_xi;
-    middles.col(cell) = 0.25 * (corners.col(film.vertex(i, j)) + corners.col(film.vertex(i + 1, j)) +
-                                corners.col(film.vertex(i, j + 1)) + corners.col(film.vertex(i + 1, j + 1)));
-  }
-  return middles;
-}
-
 absl::StatusOr<PlacedPart> place_part(Backend& backend, const v1::FacePart& message) {
   PlacedPart placed;
   placed.part.name = message.name();
@@ -92,54 +70,10 @@ absl::StatusOr<PlacedPart> place_part(Backend& backend, const v1::FacePart& mess
   if (!model.ok()) return model.status();
   const auto plan = to_simulation_spec(message.plan());
   if (!plan.ok()) return plan.status();
-  plan::PlacedPlan films;
-  if (const absl::Status status = plan::place_plan(**model, *plan, nullptr, films); !status.ok()) return status;
-  for (const geometry::Rider& rider : (*model)->geometry.riders) placed.skin.push_back(rider.vertex);
-  placed.fat.resize(3, 0);
-  for (const plan::FilmLayout& film : films.films) {
-    const Eigen::Matrix3Xd middles = find_middles((*model)->geometry.grid, film.grid);
-    Eigen::Matrix3Xd all(3, placed.fat.cols() + middles.cols());
-    all << placed.fat, middles;
-    placed.fat = std::move(all);
-  }
+  auto place = planning::place_part(**model, *plan);
+  if (!place.ok()) return place.status();
+  placed.place = *std::move(place);
   return placed;
-}
-
-/// How near zones of the two come to one another [m].
-double find_distance(const PlacedPart& one, const PlacedPart& other) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& place : one.fat.colwise()) {
-    if (other.fat.cols() > 0) least = std::min(least, (other.fat.colwise() - place).colwise().norm().minCoeff());
-  }
-  return least;
-}
-
-/// A number a part: the first of those that it belongs to, directly or through others.
-std::vector<size_t> group_touching(const std::vector<PlacedPart>& parts) {
-  std::vector<size_t> group(parts.size());
-  std::iota(group.begin(), group.end(), size_t{0});
-  for (size_t a = 0; a < parts.size(); ++a) {
-    for (size_t b = 0; b < a; ++b) {
-      if (find_distance(parts[a], parts[b]) > kTouching) continue;
-      const size_t low = std::min(group[a], group[b]);
-      const size_t high = std::max(group[a], group[b]);
-      std::replace(group.begin(), group.end(), high, low);
-    }
-  }
-  return group;
-}
-
-/// The largest of the distances over which the parts hang together, each from its nearest.
-double find_widest_gap(const std::vector<const PlacedPart*>& parts) {
-  double widest = 0.0;
-  for (const PlacedPart* part : parts) {
-    double least = std::numeric_limits<double>::infinity();
-    for (const PlacedPart* other : parts) {
-      if (other != part) least = std::min(least, find_distance(*part, *other));
-    }
-    widest = std::max(widest, least);
-  }
-  return widest;
 }
 
 /// Tells of parts that are simulated apart, though their models have skin in common.
@@ -147,15 +81,13 @@ void tell_of_margins(const std::vector<PlacedPart>& parts, const std::vector<siz
                      v1::FaceArrangement& arrangement) {
   for (size_t b = 0; b < parts.size(); ++b) {
     for (size_t a = 0; a < b; ++a) {
-      std::vector<int> common;
-      std::set_intersection(parts[a].skin.begin(), parts[a].skin.end(), parts[b].skin.begin(), parts[b].skin.end(),
-                            std::back_inserter(common));
-      if (group[a] == group[b] || common.empty()) continue;
+      const int shared = planning::count_shared_vertices(parts[a].place, parts[b].place);
+      if (group[a] == group[b] || shared == 0) continue;
       arrangement.add_remarks(absl::StrFormat(
           "The models of '%s' and '%s' share %d vertices of the scan, and their zones are %.0f mm apart: they are "
           "simulated apart, and what each does to that skin is added up.",
-          parts[a].part.name, parts[b].part.name, static_cast<int>(common.size()),
-          find_distance(parts[a], parts[b]) * kMillimetresPerMetre));
+          parts[a].part.name, parts[b].part.name, shared,
+          planning::find_distance(parts[a].place, parts[b].place) * kMillimetresPerMetre));
     }
   }
 }
@@ -163,9 +95,11 @@ void tell_of_margins(const std::vector<PlacedPart>& parts, const std::vector<siz
 absl::StatusOr<v1::ArrangedPart> arrange_group(const std::vector<const PlacedPart*>& group) {
   v1::ArrangedPart arranged;
   std::vector<ModelledPart> parts;
+  std::vector<planning::PartPlace> places;
   for (const PlacedPart* placed : group) {
     arranged.add_of(placed->part.name);
     parts.push_back(placed->part);
+    places.push_back(placed->place);
   }
   if (parts.size() == 1) {
     arranged.set_name(parts[0].name);
@@ -177,7 +111,7 @@ absl::StatusOr<v1::ArrangedPart> arrange_group(const std::vector<const PlacedPar
   arranged.set_name(merged->name);
   *arranged.mutable_plan() = std::move(merged->plan);
   *arranged.mutable_model_spec() = std::move(merged->model);
-  arranged.set_distance_mm(find_widest_gap(group) * kMillimetresPerMetre);
+  arranged.set_distance_mm(planning::find_widest_gap(places) * kMillimetresPerMetre);
   return arranged;
 }
 
@@ -199,7 +133,9 @@ absl::StatusOr<v1::FaceArrangement> arrange_face(Backend& backend, const v1::Arr
           scan.empty() ? "is a plate, not a part of a face" : "is of another scan than that of the first part");
     }
   }
-  const std::vector<size_t> group_of = group_touching(parts);
+  std::vector<planning::PartPlace> places;
+  for (const PlacedPart& part : parts) places.push_back(part.place);
+  const std::vector<size_t> group_of = planning::group_touching(places);
   v1::FaceArrangement arrangement;
   for (size_t first = 0; first < parts.size(); ++first) {
     std::vector<const PlacedPart*> group;

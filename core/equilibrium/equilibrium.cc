@@ -11,15 +11,14 @@ constexpr double kLeastPart = 1.0 / 64.0;
 
 }  // namespace
 
-absl::StatusOr<std::unique_ptr<Equilibrium>> Equilibrium::create(const model::FaceModel& model,
-                                                                 const std::vector<plan::FilmLayout>& films,
-                                                                 const mechanics::FilmCells& cells,
-                                                                 mechanics::TissueSystem& system,
-                                                                 mechanics::FilmGeometry& geometry,
-                                                                 const StaticLoad& load, mechanics::StepCost& cost) {
+absl::StatusOr<std::unique_ptr<Equilibrium>> Equilibrium::create(
+    const model::FaceModel& model, const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
+    mechanics::TissueSystem& system, mechanics::FilmGeometry& geometry, const StaticLoad& load,
+    mechanics::StepCost& cost, const std::vector<Eigen::VectorXd>& entered) {
   auto factor = mechanics::TissueFactor::create(model, system, cost);
   if (!factor.ok()) return factor.status();
-  return std::unique_ptr<Equilibrium>(new Equilibrium(model, *std::move(factor), films, cells, system, geometry, load));
+  return std::unique_ptr<Equilibrium>(
+      new Equilibrium(model, *std::move(factor), films, cells, system, geometry, load, entered));
 }
 
 Settled Equilibrium::find(const PoolTarget& target, const Eigen::VectorXd& springs, double tolerance) {

@@ -67,12 +67,11 @@ struct TissueBeside {
 class Equilibrium {
  public:
   /// What is passed here outlives the equilibrium. Errors as TissueFactor::create.
-  static absl::StatusOr<std::unique_ptr<Equilibrium>> create(const model::FaceModel& model,
-                                                             const std::vector<plan::FilmLayout>& films,
-                                                             const mechanics::FilmCells& cells,
-                                                             mechanics::TissueSystem& system,
-                                                             mechanics::FilmGeometry& geometry, const StaticLoad& load,
-                                                             mechanics::StepCost& cost);
+  /// @param entered  the cells that fat has entered, as find_pools takes them: it enters no more
+  static absl::StatusOr<std::unique_ptr<Equilibrium>> create(
+      const model::FaceModel& model, const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
+      mechanics::TissueSystem& system, mechanics::FilmGeometry& geometry, const StaticLoad& load,
+      mechanics::StepCost& cost, const std::vector<Eigen::VectorXd>& entered = {});
 
   const Pools& pools() const { return parts_.pools; }
   /// Of each pool at rest thickness [m3].
@@ -106,8 +105,9 @@ class Equilibrium {
  private:
   Equilibrium(const model::FaceModel& model, std::unique_ptr<mechanics::TissueFactor> factor,
               const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
-              mechanics::TissueSystem& system, mechanics::FilmGeometry& geometry, const StaticLoad& load)
-      : parts_(std::move(factor), films, cells, system, geometry, load), rest_start_(model, parts_, load) {}
+              mechanics::TissueSystem& system, mechanics::FilmGeometry& geometry, const StaticLoad& load,
+              const std::vector<Eigen::VectorXd>& entered)
+      : parts_(std::move(factor), films, cells, system, geometry, load, entered), rest_start_(model, parts_, load) {}
   bool leave_last(const PoolTarget& target, Shape& shape);
   void remember(Shape shape, const PoolTarget& target, const Eigen::VectorXd& springs, bool is_from_rest);
   std::vector<std::optional<Sensitivity>> answer(const std::vector<LoadChange>& changes);

@@ -5,6 +5,8 @@
 namespace lipofill::equilibrium {
 namespace {
 
+/// More rows than these are those of cells.
+constexpr Eigen::Index kFewRows = 24;
 /// Rows whose pivots differ by more than this depend on one another.
 constexpr double kLeastPivotShare = 1e-12;
 
@@ -25,6 +27,12 @@ Eigen::MatrixXd find_rows(const Eigen::SparseMatrix<double>& derivative, const P
     }
   }
   return rows;
+}
+
+Eigen::MatrixXd multiply_rows(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& columns) {
+  if (rows.cols() <= kFewRows) return rows.transpose() * columns;
+  const Eigen::SparseMatrix<double> few = rows.sparseView();
+  return few.transpose() * columns;
 }
 
 bool HeldResponse::renew(const StaticBalance& balance, const Eigen::VectorXd& springs) {
@@ -85,7 +93,7 @@ const Eigen::VectorXd& HeldResponse::column_of_cell(int cell) {
 /// dp = missing, and adds S0^-1 A0^T dp to dx.
 bool HeldResponse::add_pressures(const Shape& shape, const Eigen::MatrixXd& rows, const Eigen::VectorXd& missing,
                                  Eigen::VectorXd& dx, Eigen::VectorXd& dp) {
-  Eigen::MatrixXd schur = rows.transpose() * columns_;
+  Eigen::MatrixXd schur = multiply_rows(rows, columns_);
   Eigen::VectorXd right = missing - rows.transpose() * dx;
   for (int pool = 0; pool < pools_.n(); ++pool) {
     if (!shape.is_at_limit[static_cast<size_t>(pool)]) continue;

@@ -21,8 +21,8 @@ struct Parts {
   /// What is passed here outlives the parts.
   Parts(std::unique_ptr<mechanics::TissueFactor> tissue_factor, const std::vector<plan::FilmLayout>& films,
         const mechanics::FilmCells& cells, mechanics::TissueSystem& tissue_system, mechanics::FilmGeometry& geometry,
-        const StaticLoad& load)
-      : pools(find_pools(films, cells)),
+        const StaticLoad& load, const std::vector<Eigen::VectorXd>& entered)
+      : pools(find_pools(films, cells, entered)),
         system(tissue_system),
         factor(std::move(tissue_factor)),
         balance(system, films, cells, pools, geometry, load),

@@ -31,11 +31,15 @@ std::string join_names(const plan::FilmLayout& film, const std::set<int>& zones)
   return absl::StrJoin(zones, " + ", [&](std::string* out, int zone) { out->append(film.zone_names[zone]); });
 }
 
-void add_pools_of(const plan::FilmLayout& film, Pools& pools) {
+void add_pools_of(const plan::FilmLayout& film, const Eigen::VectorXd& entered, Pools& pools) {
   const film::FilmGrid& grid = film.grid;
+  const auto is_open = [&](int cell) { return entered.size() == 0 || entered[cell] > 0.0; };
   CellSets sets(grid.n_cells());
-  for (const film::Edge& edge : grid.edges) sets.join(edge.left, edge.right);
-  for (const film::LeakyWall& wall : grid.leaky_walls) sets.join(wall.left, wall.right);
+  const auto join = [&](int left, int right) {
+    if (is_open(left) && is_open(right)) sets.join(left, right);
+  };
+  for (const film::Edge& edge : grid.edges) join(edge.left, edge.right);
+  for (const film::LeakyWall& wall : grid.leaky_walls) join(wall.left, wall.right);
   std::vector<int> pool_of_first(grid.n_cells(), -1);
   std::vector<std::set<int>> zones;
   for (int cell = 0; cell < grid.n_cells(); ++cell) {
@@ -58,10 +62,11 @@ Eigen::VectorXd Pools::sum(const Eigen::VectorXd& of_cells) const {
   return sums;
 }
 
-Pools find_pools(const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells) {
+Pools find_pools(const std::vector<plan::FilmLayout>& films, const mechanics::FilmCells& cells,
+                 const std::vector<Eigen::VectorXd>& entered) {
   Pools pools;
   for (size_t f = 0; f < films.size(); ++f) {
-    if (cells.is_on_tissue(f)) add_pools_of(films[f], pools);
+    if (cells.is_on_tissue(f)) add_pools_of(films[f], entered.empty() ? Eigen::VectorXd() : entered[f], pools);
   }
   return pools;
 }

@@ -22,7 +22,7 @@ bool RestStart::leave(const Eigen::VectorXd& volume, const Eigen::VectorXd& spri
   const Eigen::MatrixXd rows = find_rows(balance.derivative(), parts_.pools, shape);
   const Eigen::VectorXd missing =
       volume - shape.reduce(parts_.pools, balance.gap()) - rows.transpose() * known_->of_load;
-  shape.pressure = Eigen::FullPivLU<Eigen::MatrixXd>(rows.transpose() * known_->of_pools).solve(missing);
+  shape.pressure = Eigen::FullPivLU<Eigen::MatrixXd>(multiply_rows(rows, known_->of_pools)).solve(missing);
   shape.displacement = known_->of_load + known_->of_pools * shape.pressure;
   balance.bring_to(shape, springs);
   if (!(balance.relative_force() <= kFarShare)) {

@@ -20,13 +20,18 @@ Found in_film(const plan::SimulationSpec& spec, const plan::FilmLayout& film, co
   if (film.wall != plan::FilmWallKind::kTissue) {
     return Hindrance{field + ".wall", "is none of tissue: its film has no equilibrium with the skin"};
   }
-  const double entry = film.connective_tissue.entry_pressure;
-  if (entry > 0.0) {
-    return Hindrance{field + ".connective_tissue.entry_pressure_pa",
-                     absl::StrCat("is ", entry, " Pa: which cells fat enters depends on its way")};
-  }
   if (!film.grid.leaky_walls.empty() && !spec.gravity.isZero(0.0)) {
     return Hindrance{field + ".walls", "leak while gravity pulls: fat goes on circulating through them"};
+  }
+  return {};
+}
+
+Found in_tissue_to_enter(const std::vector<plan::FilmLayout>& films) {
+  for (size_t f = 0; f < films.size(); ++f) {
+    const double entry = films[f].connective_tissue.entry_pressure;
+    if (entry == 0.0) continue;
+    return Hindrance{absl::StrCat("films[", f, "].connective_tissue.entry_pressure_pa"),
+                     absl::StrCat("is ", entry, " Pa: which cells fat enters depends on its way"), true};
   }
   return {};
 }
@@ -70,7 +75,9 @@ std::optional<Hindrance> find_hindrance(const plan::SimulationSpec& spec, const 
   for (size_t f = 0; f < films.size(); ++f) {
     if (const Found found = in_film(spec, films[f], absl::StrCat("films[", f, "]"))) return found;
   }
-  if (const Found found = in_ligaments(ligaments); found && !is_injected) return found;
+  if (is_injected) return in_time(spec, injected_until);
+  if (const Found found = in_tissue_to_enter(films)) return found;
+  if (const Found found = in_ligaments(ligaments)) return found;
   return in_time(spec, injected_until);
 }
 

@@ -25,8 +25,9 @@ struct Hindrance {
 /// The first field of a plan that forbids its direct solution; nothing for a plan that has one. A
 /// settled shape is the limit of the plan stepped for ever where fat flows under any pressure
 /// difference, however small, and where tissue springs back the way it gave: not with a yield
-/// stress, ligaments that may break, tissue that fat has yet to enter, the lumped coupling, films
-/// with walls of their own, or fat that circulates through leaky walls under gravity.
+/// stress, the lumped coupling, films with walls of their own, or fat that circulates through leaky
+/// walls under gravity; with ligaments that may break or tissue that fat has yet to enter only once
+/// all is injected.
 /// Checked by tests/unit/equilibrium/scope_test.cc.
 ///
 /// @param films      of the plan, placed

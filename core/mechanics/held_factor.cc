@@ -30,7 +30,7 @@ absl::StatusOr<std::unique_ptr<HeldFactor>> HeldFactor::create(const model::Face
   const Eigen::SparseMatrix<double>& s = system.tissue().system_matrix();
   const Eigen::SparseMatrix<double>& b = system.gaps().derivative();
   const bool is_dense = b.rows() <= kMaxDenseCells;
-  const std::string key = model::key_of_analysis(system.setup().key, system.gap_keys(), is_dense);
+  const std::string key = model::key_of_analysis(system.setup().pattern_key, system.gap_keys(), is_dense);
   auto analysis = model.shared->analyses.get(key, [&] {
     return coupling::FactorAnalysis::create(s, is_dense ? b : Eigen::SparseMatrix<double>(0, b.cols()));
   });

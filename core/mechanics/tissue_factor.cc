@@ -20,7 +20,7 @@ constexpr double kFactorTolerance = 1e-3;
 absl::StatusOr<std::unique_ptr<TissueFactor>> TissueFactor::create(const model::FaceModel& model, TissueSystem& system,
                                                                    StepCost& cost) {
   const Eigen::SparseMatrix<double>& s = system.tissue().system_matrix();
-  const std::string key = model::key_of_analysis(system.setup().key, {}, false);
+  const std::string key = model::key_of_analysis(system.setup().pattern_key, {}, false);
   auto analysis = model.shared->analyses.get(
       key, [&] { return coupling::FactorAnalysis::create(s, Eigen::SparseMatrix<double>(0, s.cols())); });
   if (!analysis.ok()) return field_violation("model", std::string(analysis.status().message()));

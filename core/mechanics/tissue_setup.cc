@@ -153,7 +153,8 @@ absl::StatusOr<TissueSetup> set_up_tissue(const model::FaceModel& model, const s
   if (!fibres.ok()) return fibres.status();
   std::vector<solid::ElasticMaterial> materials;
   for (const model::TissueLayerSpec& layer : model.layers) materials.push_back(layer.material);
-  std::string key = model::key_of_tissue(held.split.mesh, materials, held.supports, fibres->springs);
+  std::string pattern_key = model::key_of_pattern(held.split.mesh, held.supports, fibres->springs);
+  std::string key = model::key_of_tissue(pattern_key, held.split.mesh, materials, held.supports, fibres->springs);
   auto structure = model.shared->tissues.get(key, [&] {
     return solid::TissueStructure::create(std::move(held.split.mesh), materials, std::move(held.supports),
                                           fibres->springs);
@@ -163,8 +164,9 @@ absl::StatusOr<TissueSetup> set_up_tissue(const model::FaceModel& model, const s
   auto tissue =
       solid::Tissue::create(*std::move(structure), youngs_moduli, {spec.damping_mass, spec.damping_stiffness});
   if (!tissue.ok()) return tissue.status();
-  return TissueSetup{*std::move(tissue),           std::move(held.walls), std::move(held.skin_nodes),
-                     std::move(fibres->ligaments), std::move(key),        std::move(youngs_moduli)};
+  return TissueSetup{*std::move(tissue),           std::move(held.walls),  std::move(held.skin_nodes),
+                     std::move(fibres->ligaments), std::move(pattern_key), std::move(key),
+                     std::move(youngs_moduli)};
 }
 
 }  // namespace lipofill::mechanics

@@ -32,7 +32,8 @@ struct TissueSetup {
   std::vector<coupling::WallNodes> walls;  ///< a film on tissue, in the order of the films
   std::vector<int> skin_nodes;             ///< (nodes_per_level)
   std::vector<LigamentLayout> ligaments;
-  std::string key;                    ///< names the tissue's structure (shared_parts.h)
+  std::string pattern_key;            ///< names what couples in the tissue (shared_parts.h)
+  std::string key;                    ///< names its structure
   std::vector<double> youngs_moduli;  ///< of the model's layers [Pa]
 };
 

@@ -43,7 +43,7 @@ absl::Status TissueSystem::set_up_gaps(const model::FaceModel& model, const std:
   for (const plan::FilmLayout& film : films) {
     if (film.wall != plan::FilmWallKind::kTissue) continue;
     const coupling::WallNodes& walls = setup_.walls[gaps.size()];
-    gap_keys_.push_back(model::key_of_gap(setup_.key, grid, walls, film.grid, film.pieces));
+    gap_keys_.push_back(model::key_of_gap(setup_.pattern_key, grid, walls, film.grid, film.pieces));
     auto gap =
         model.shared->gaps.get(gap_keys_.back(), [&]() -> absl::StatusOr<std::shared_ptr<const coupling::GapGeometry>> {
           return std::make_shared<const coupling::GapGeometry>(coupling::make_gap_geometry(

@@ -6,18 +6,15 @@
 namespace lipofill::model {
 namespace {
 
-template <size_t N>
-void add(Hasher& hasher, const std::vector<std::array<int, N>>& tuples) {
+template <typename T, size_t N>
+void add(Hasher& hasher, const std::vector<std::array<T, N>>& tuples) {
   hasher.add(static_cast<uint64_t>(tuples.size()));
-  hasher.add_bytes(tuples.data(), tuples.size() * sizeof(std::array<int, N>));
+  hasher.add_bytes(tuples.data(), tuples.size() * sizeof(std::array<T, N>));
 }
 
-void add(Hasher& hasher, const solid::HexMesh& mesh) {
-  hasher.add(static_cast<uint64_t>(mesh.rest_positions.cols()));
-  hasher.add_bytes(mesh.rest_positions.data(), static_cast<size_t>(mesh.rest_positions.size()) * sizeof(double));
-  add(hasher, mesh.hexahedra);
-  hasher.add(mesh.material);
-  for (const bool stacked : mesh.stacked) hasher.add(stacked);
+void add_matrix(Hasher& hasher, const Eigen::Matrix3Xd& matrix) {
+  hasher.add(static_cast<uint64_t>(matrix.cols()));
+  hasher.add_bytes(matrix.data(), static_cast<size_t>(matrix.size()) * sizeof(double));
 }
 
 /// Young's modulus is left out: it belongs to the tissue, not to its structure.
@@ -26,14 +23,6 @@ void add(Hasher& hasher, const solid::ElasticMaterial& material) {
     hasher.add(value);
   }
   hasher.add(static_cast<int>(material.law));
-}
-
-void add(Hasher& hasher, const solid::NodeSupports& supports) {
-  hasher.add(static_cast<uint64_t>(supports.fixed.size()));
-  for (const auto& fixed : supports.fixed) {
-    for (const bool component : fixed) hasher.add(component);
-  }
-  hasher.add(supports.spring);
 }
 
 void add(Hasher& hasher, const solid::WallSpring& spring) {
@@ -50,22 +39,39 @@ std::shared_ptr<SharedParts> make_shared_parts() {
   return std::make_shared<SharedParts>();
 }
 
-std::string key_of_tissue(const solid::HexMesh& mesh, const std::vector<solid::ElasticMaterial>& materials,
-                          const solid::NodeSupports& supports, const std::vector<solid::WallSpring>& springs) {
+std::string key_of_pattern(const solid::HexMesh& mesh, const solid::NodeSupports& supports,
+                           const std::vector<solid::WallSpring>& springs) {
   Hasher hasher;
-  add(hasher, mesh);
+  hasher.add(static_cast<uint64_t>(mesh.rest_positions.cols()));
+  add(hasher, mesh.hexahedra);
+  add(hasher, supports.fixed);
+  for (const solid::WallSpring& spring : springs) {
+    hasher.add_bytes(spring.outer.data(), sizeof spring.outer);
+    hasher.add_bytes(spring.inner.data(), sizeof spring.inner);
+  }
+  return hasher.hex_digest();
+}
+
+std::string key_of_tissue(const std::string& pattern_key, const solid::HexMesh& mesh,
+                          const std::vector<solid::ElasticMaterial>& materials, const solid::NodeSupports& supports,
+                          const std::vector<solid::WallSpring>& springs) {
+  Hasher hasher;
+  hasher.add(pattern_key);
+  add_matrix(hasher, mesh.rest_positions);
+  hasher.add(mesh.material);
+  hasher.add(std::vector<char>(mesh.stacked.begin(), mesh.stacked.end()));
   hasher.add(static_cast<uint64_t>(materials.size()));
   for (const solid::ElasticMaterial& material : materials) add(hasher, material);
-  add(hasher, supports);
+  hasher.add(supports.spring);
   for (const solid::WallSpring& spring : springs) add(hasher, spring);
   return hasher.hex_digest();
 }
 
-std::string key_of_gap(const std::string& tissue_key, const geometry::LayeredGrid& grid,
+std::string key_of_gap(const std::string& pattern_key, const geometry::LayeredGrid& grid,
                        const coupling::WallNodes& walls, const film::FilmGrid& film,
                        const std::vector<film::CellPiece>& pieces) {
   Hasher hasher;
-  hasher.add(tissue_key);
+  hasher.add(pattern_key);
   hasher.add(grid.n_xi);
   hasher.add(grid.n_eta);
   hasher.add(walls.outer);
@@ -83,10 +89,10 @@ std::string key_of_gap(const std::string& tissue_key, const geometry::LayeredGri
   return hasher.hex_digest();
 }
 
-std::string key_of_analysis(const std::string& tissue_key, const std::vector<std::string>& gap_keys,
+std::string key_of_analysis(const std::string& pattern_key, const std::vector<std::string>& gap_keys,
                             bool has_pressures) {
   Hasher hasher;
-  hasher.add(tissue_key);
+  hasher.add(pattern_key);
   for (const std::string& key : gap_keys) hasher.add(key);
   hasher.add(has_pressures);
   return hasher.hex_digest();

@@ -24,7 +24,7 @@ struct RestResponse {
 /// patterns, the places of the gaps on the tissue, the analysis of the factorisation. None of it is
 /// written once it is made, and it is the same whoever makes it first: results do not depend on the
 /// sharing. Young's moduli are no part of them but of rest responses, so that tissues of other
-/// stiffness share them too.
+/// stiffness share them too; and models that differ in thickness alone share what patterns decide.
 /// Thread-safe. Checked by tests/unit/model/shared_parts_test.cc.
 struct SharedParts {
   SharedCache<solid::TissueStructure> tissues;
@@ -33,14 +33,18 @@ struct SharedParts {
   SharedCache<RestResponse> rest_responses;
 };
 
-/// Keys over all that a part is made from.
-std::string key_of_tissue(const solid::HexMesh& mesh, const std::vector<solid::ElasticMaterial>& materials,
-                          const solid::NodeSupports& supports, const std::vector<solid::WallSpring>& springs);
-std::string key_of_gap(const std::string& tissue_key, const geometry::LayeredGrid& grid,
+/// Keys over all that a part is made from. What depends on the pattern of the tissue alone - how its
+/// hexahedra hang together, what holds them - is shared by tissues of every thickness.
+std::string key_of_pattern(const solid::HexMesh& mesh, const solid::NodeSupports& supports,
+                           const std::vector<solid::WallSpring>& springs);
+std::string key_of_tissue(const std::string& pattern_key, const solid::HexMesh& mesh,
+                          const std::vector<solid::ElasticMaterial>& materials, const solid::NodeSupports& supports,
+                          const std::vector<solid::WallSpring>& springs);
+std::string key_of_gap(const std::string& pattern_key, const geometry::LayeredGrid& grid,
                        const coupling::WallNodes& walls, const film::FilmGrid& film,
                        const std::vector<film::CellPiece>& pieces);
 /// @param has_pressures  the pressures are in the factorisation
-std::string key_of_analysis(const std::string& tissue_key, const std::vector<std::string>& gap_keys,
+std::string key_of_analysis(const std::string& pattern_key, const std::vector<std::string>& gap_keys,
                             bool has_pressures);
 
 }  // namespace lipofill::model

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/hash.h"
+#include "core/model/shared_parts.h"
 
 namespace lipofill::model {
 
@@ -25,6 +26,7 @@ std::shared_ptr<const FaceModel> make_thicker(const FaceModel& model, int layer,
   thicker->base_give = model.base_give;
   thicker->thickness = model.thickness;
   thicker->is_square = model.is_square;
+  thicker->shared = model.shared;
   Hasher hasher;
   hasher.add("lipofill thicker model 1");
   hasher.add(model.content_hash);

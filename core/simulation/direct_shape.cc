@@ -60,10 +60,13 @@ std::optional<Hindrance> DirectShape::find_hindrance(const model::FaceModel& mod
 absl::StatusOr<std::unique_ptr<DirectShape>> DirectShape::create(const model::FaceModel& model,
                                                                  const std::vector<plan::FilmLayout>& films,
                                                                  const plan::SimulationSpec& spec,
-                                                                 step::CoupledStep& stepper) {
+                                                                 step::CoupledStep& stepper,
+                                                                 const SimulationState& from) {
+  std::vector<Eigen::VectorXd> entered;
+  for (const FilmState& film : from.films) entered.push_back(film.is_entered);
   auto equilibrium =
       equilibrium::Equilibrium::create(model, films, stepper.cells(), *stepper.system(), stepper.geometry(),
-                                       {spec.gravity, spec.fat_density}, stepper.cost());
+                                       {spec.gravity, spec.fat_density}, stepper.cost(), entered);
   if (!equilibrium.ok()) return equilibrium.status();
   const double limit = spec.suction_limit.value_or(std::numeric_limits<double>::infinity());
   return std::unique_ptr<DirectShape>(new DirectShape(stepper.cells(), *std::move(equilibrium), -limit));

@@ -29,12 +29,14 @@ class DirectShape {
                                                               const mechanics::SimulationState& rest,
                                                               const step::CoupledStep& stepper, bool is_injected);
 
-  /// For a plan that nothing forbids. Errors as Equilibrium::create. What is passed here outlives
-  /// the shape.
+  /// For a plan that nothing forbids, or nothing once all is injected. Errors as
+  /// Equilibrium::create. What is passed here outlives the shape, but for `from`.
+  /// @param from  says which cells fat has entered: it enters no more
   static absl::StatusOr<std::unique_ptr<DirectShape>> create(const model::FaceModel& model,
                                                              const std::vector<plan::FilmLayout>& films,
                                                              const plan::SimulationSpec& spec,
-                                                             step::CoupledStep& stepper);
+                                                             step::CoupledStep& stepper,
+                                                             const mechanics::SimulationState& from);
 
   /// Finds the shape with what a state at rest holds and what is injected beside it [m3] (a film,
   /// its cells), and writes it into `next`: positions, and volumes and pressures of the films;

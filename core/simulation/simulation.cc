@@ -82,7 +82,7 @@ void Simulation::Impl::advance() {
     if (is_direct) decide_way();  // injections may have come since
     if (is_direct && settles_directly && settle()) return;
     is_direct = false;
-    if (finishes_directly && is_just_injected() && finish()) return;
+    if (is_time_to_finish() && finish()) return;
     try_with_smaller_steps();
     if (!attempt.accepted) return fail(attempt.reason);
     accept(attempt.state.time - state.time);

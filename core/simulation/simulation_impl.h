@@ -29,7 +29,8 @@ struct Simulation::Impl {
   bool settles_directly = false;        ///< the settled shape is found in place of steps
   bool is_direct = true;                ///< all steps so far were to settled shapes
   bool finishes_directly = false;       ///< it is so once all is injected in steps
-  std::unique_ptr<DirectShape> direct;  ///< made when it is
+  std::string hindrance;                ///< why the plan is not found directly from its beginning
+  std::unique_ptr<DirectShape> direct;  ///< made when it is, for the cells that fat has entered by then
   mechanics::SimulationState state;
   Phase phase = Phase::kRunning;
   std::string reason;
@@ -47,7 +48,9 @@ struct Simulation::Impl {
   void decide_way();
   bool settle();
   bool is_just_injected() const;
+  bool is_time_to_finish() const;
   bool finish();
+  std::string find_why_not_finished(const equilibrium::Settled& settled, mechanics::SimulationState next) const;
   absl::Status make_direct();
   void become(const equilibrium::Settled& settled, mechanics::SimulationState next, double time);
   void end_path(const equilibrium::Settled& settled);

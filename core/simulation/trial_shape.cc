@@ -261,7 +261,7 @@ std::optional<TrialShape::ThickerTissue> TrialShape::make_thicker_tissue(int lay
   auto stepper = step::CoupledStep::create(*thicker.model, impl.films, impl.spec);
   if (!stepper.ok()) return {};
   thicker.stepper = *std::move(stepper);
-  auto direct = DirectShape::create(*thicker.model, impl.films, impl.spec, *thicker.stepper);
+  auto direct = DirectShape::create(*thicker.model, impl.films, impl.spec, *thicker.stepper, impl.state);
   if (!direct.ok()) return {};
   thicker.direct = *std::move(direct);
   return thicker;

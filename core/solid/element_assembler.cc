@@ -18,12 +18,30 @@ ElasticMaterial at_unit_modulus(ElasticMaterial material) {
   return material;
 }
 
-HexStiffness compute_unit_stiffness(const HexMesh& mesh, int hexahedron,
-                                    const std::vector<ElasticMaterial>& materials) {
-  const HexNodes nodes = mesh.gather(hexahedron, mesh.rest_positions);
-  const auto D = compute_elasticity_matrix(at_unit_modulus(materials[mesh.material[hexahedron]]));
-  return mesh.stacked[hexahedron] ? compute_incompatible_modes_stiffness(nodes, D)
-                                  : compute_solid_shell_stiffness(nodes, D);
+/// The stiffness of a batch's hexahedra at 1 Pa; lanes that are left over have none.
+std::array<HexStiffness, kLanes> compute_unit_stiffness(const HexMesh& mesh,
+                                                        const std::vector<ElasticMaterial>& materials,
+                                                        const std::array<int, kLanes>& hexahedra) {
+  std::array<HexNodes, kLanes> nodes;
+  std::array<ElasticityMatrix, kLanes> D;
+  bool is_any_a_shell = false;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const int e = hexahedra[lane] < 0 ? hexahedra[0] : hexahedra[lane];
+    nodes[lane] = mesh.gather(e, mesh.rest_positions);
+    D[lane] = compute_elasticity_matrix(at_unit_modulus(materials[mesh.material[e]]));
+    is_any_a_shell = is_any_a_shell || !mesh.stacked[e];
+  }
+  std::array<HexStiffness, kLanes> stiffness;
+  if (is_any_a_shell) compute_solid_shell_stiffness(nodes, D, stiffness);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const int e = hexahedra[lane];
+    if (e < 0) {
+      stiffness[lane].setZero();
+    } else if (mesh.stacked[e]) {
+      stiffness[lane] = compute_incompatible_modes_stiffness(nodes[lane], D[lane]);
+    }
+  }
+  return stiffness;
 }
 
 /// Hexahedra by the order of their nodes, each list in the order of the mesh.
@@ -72,11 +90,11 @@ void ElementAssembler::add_batch(const HexMesh& mesh, const std::vector<ElasticM
   hexahedra_.push_back(hexahedra);
   ElementBatch& force = forces_.emplace_back();
   StiffnessBatch& stiffness = stiffness_.emplace_back();
+  const std::array<HexStiffness, kLanes> unit_stiffness = compute_unit_stiffness(mesh, materials, hexahedra);
   for (int lane = 0; lane < kLanes; ++lane) {
     const bool is_left_over = hexahedra[lane] < 0;
     const int e = is_left_over ? hexahedra[0] : hexahedra[lane];
-    const HexStiffness K =
-        is_left_over ? HexStiffness(HexStiffness::Zero()) : compute_unit_stiffness(mesh, e, materials);
+    const HexStiffness& K = unit_stiffness[lane];
     force.set_lane(lane, mesh.hexahedra[e], mesh.gather(e, mesh.rest_positions), K);
     set_tension(mesh, e, materials[mesh.material[e]], lane, force);
     stiffness.set_lane(lane, K);

@@ -1,14 +1,6 @@
 #include "core/solid/enhanced_strain.h"
 
-#include <array>
-
 namespace lipofill::solid {
-namespace {
-
-/// The tensor components of the six Voigt rows.
-constexpr std::array<std::array<int, 2>, 6> kVoigt = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
-
-}  // namespace
 
 StrainOperator compute_covariant_strain_operator(const HexNodes& nodes, const LocalPoint& point) {
   const Eigen::Matrix<double, 8, 3> dN = compute_shape_derivatives(point);

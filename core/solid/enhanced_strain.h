@@ -3,10 +3,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <array>
 
 #include "core/solid/hex_shape.h"
 
 namespace lipofill::solid {
+
+/// The tensor components of the six Voigt rows.
+inline constexpr std::array<std::array<int, 2>, 6> kVoigt = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}}};
 
 using StrainOperator = Eigen::Matrix<double, 6, 24>;
 

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <array>
+
+#include "core/base/lanes.h"
 #include "core/solid/hex_shape.h"
 
 namespace lipofill::solid {
+
+using ElasticityMatrix = Eigen::Matrix<double, 6, 6>;
 
 /// Stiffness (24, 24) of the solid-shell hexahedron, for layers one element thick:
 ///
@@ -18,6 +23,11 @@ namespace lipofill::solid {
 /// @param nodes       rest positions [m], positive Jacobian
 /// @param elasticity  D of compute_elasticity_matrix [Pa]
 /// Checked by tests/unit/solid/element_test.cc, tests/verification/solid/.
-HexStiffness compute_solid_shell_stiffness(const HexNodes& nodes, const Eigen::Matrix<double, 6, 6>& elasticity);
+HexStiffness compute_solid_shell_stiffness(const HexNodes& nodes, const ElasticityMatrix& elasticity);
+
+/// The same of kLanes hexahedra side by side, the same bits, at a quarter of the time for each.
+void compute_solid_shell_stiffness(const std::array<HexNodes, kLanes>& nodes,
+                                   const std::array<ElasticityMatrix, kLanes>& elasticity,
+                                   std::array<HexStiffness, kLanes>& stiffness);
 
 }  // namespace lipofill::solid

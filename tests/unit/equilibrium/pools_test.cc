@@ -21,14 +21,14 @@ struct Case {
   std::shared_ptr<const model::FaceModel> model = simulation::make_small_model();
   std::vector<plan::FilmSpec> specs{simulation::make_small_plan().films[0]};
 
-  Pools find() const {
+  Pools find(const std::vector<Eigen::VectorXd>& entered = {}) const {
     std::vector<plan::FilmLayout> films;
     for (const plan::FilmSpec& spec : specs) {
       const auto film = plan::place_film(*model, spec);
       EXPECT_TRUE(film.ok()) << film.status();
       films.push_back(*film);
     }
-    return find_pools(films, mechanics::number_cells(films));
+    return find_pools(films, mechanics::number_cells(films), entered);
   }
   int cells_of(const Pools& pools, int pool) const {
     return static_cast<int>(std::count(pools.of_cell.begin(), pools.of_cell.end(), pool));
@@ -43,6 +43,18 @@ TEST(Pools, AZoneInOnePieceIsOne) {
   const Pools pools = c.find();
   EXPECT_THAT(pools.names, ElementsAre("all"));
   EXPECT_EQ(c.cells_of(pools, 0), 36);
+}
+
+/// A front that has come as far as the first two rows.
+TEST(Pools, ACellThatFatHasYetToEnterIsOneOfItsOwn) {
+  const Case c;
+  Eigen::VectorXd entered = Eigen::VectorXd::Zero(36);
+  entered.head(12).setOnes();
+  const Pools pools = c.find({entered});
+  EXPECT_EQ(pools.n(), 1 + 24);
+  EXPECT_EQ(c.cells_of(pools, 0), 12);
+  EXPECT_EQ(c.cells_of(pools, 1), 1);
+  EXPECT_EQ(c.find({Eigen::VectorXd()}).n(), 1) << "no entry pressure";
 }
 
 TEST(Pools, ATightWallPartsAZone) {

@@ -33,7 +33,9 @@ std::string find_field(const std::function<void(plan::SimulationSpec&)>& change,
   if (found.has_value()) {
     EXPECT_EQ(found->text(), found->field + " " + found->why);
     EXPECT_GT(found->why.size(), 20u) << "says why";
-    EXPECT_EQ(found->ends_with_injection, found->field.starts_with("ligaments")) << found->field;
+    EXPECT_EQ(found->ends_with_injection,
+              found->field.starts_with("ligaments") || found->field.find("entry") != std::string::npos)
+        << found->field;
   }
   return found.has_value() ? found->field : "";
 }
@@ -51,9 +53,16 @@ TEST(Scope, YieldStressIsNot) {
   EXPECT_EQ(find_field([](auto& spec) { spec.fat_yield_stress = 1.0; }), "fat.yield_stress_pa");
 }
 
-TEST(Scope, TissueToBeEnteredIsNot) {
-  EXPECT_EQ(find_field([](auto& spec) { spec.films[0].connective_tissue.entry_pressure = 100.0; }),
-            "films[0].connective_tissue.entry_pressure_pa");
+/// Until all is injected; what else forbids it does so then, too.
+TEST(Scope, TissueToBeEnteredIsNotUntilAllIsInjected) {
+  const auto enter = [](auto& spec) { spec.films[0].connective_tissue.entry_pressure = 100.0; };
+  EXPECT_EQ(find_field(enter), "films[0].connective_tissue.entry_pressure_pa");
+  EXPECT_EQ(find_field(enter, 0.0, true), "");
+  const auto enter_lumped = [](auto& spec) {
+    spec.films[0].connective_tissue.entry_pressure = 100.0;
+    spec.coupling = plan::CouplingMode::kLumped;
+  };
+  EXPECT_EQ(find_field(enter_lumped, 0.0, true), "coupling");
 }
 
 /// Once all is injected; a yield stress still does.

@@ -4,6 +4,7 @@
 
 #include <thread>
 
+#include "core/model/thicker_model.h"
 #include "tests/unit/simulation/small_case.h"
 
 namespace lipofill::simulation {
@@ -60,6 +61,22 @@ TEST(SharedParts, AreOneForTissuesOfOtherStiffness) {
   const std::string of_stiff = hash_after(*stiff, 12);
   EXPECT_EQ(of_stiff, hash_after(*create(*built, spec), 12));
   EXPECT_NE(of_stiff, hash_after(*soft, 12));
+}
+
+/// What thickness does not decide is shared with a thicker model; its steps are as if it were not.
+TEST(SharedParts, AreOneForTissuesOfOtherThickness) {
+  const auto model = make_small_model();
+  const plan::SimulationSpec spec = make_small_plan();
+  const Pointer nominal = create(model, spec);
+  const auto thicker = model::make_thicker(*model, 0, 0.05);
+  const Pointer sharing = create(thicker, spec);
+  expect_sizes(*model, 2, 1, 1);
+  EXPECT_EQ(thicker->shared, model->shared);
+  auto apart = std::make_shared<model::FaceModel>(*thicker);
+  apart->shared = model::make_shared_parts();
+  const std::string of_thicker = hash_after(*sharing, 12);
+  EXPECT_EQ(of_thicker, hash_after(*create(apart, spec), 12));
+  EXPECT_NE(of_thicker, hash_after(*nominal, 12));
 }
 
 TEST(SharedParts, AreApartWhereThePlanMakesThemSo) {

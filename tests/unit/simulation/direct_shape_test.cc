@@ -145,6 +145,42 @@ TEST(DirectShape, StepsOnWhereALigamentBreaksAfterTheInjection) {
   EXPECT_EQ(simulation->report().broken_ligament_points, 2);
 }
 
+/// Tissue that fat enters above a pressure; a cell at the needle is its way in.
+plan::SimulationSpec make_plan_with_entry(double entry_pressure) {
+  plan::SimulationSpec spec = make_settled_plan();
+  spec.films[0].rest_thickness = geometry::ScalarField::constant(0.2e-3);
+  spec.films[0].connective_tissue = {2e5, entry_pressure};
+  return spec;
+}
+
+/// The way through the injection decides which cells fat enters, and from there the shape is found
+/// directly; against the same plan in steps until a thousandth of a millimetre is left.
+TEST(DirectShape, FinishesWhereFatEntersNoMore) {
+  plan::SimulationSpec spec = make_plan_with_entry(3e3);
+  const auto finished = make_small_simulation(spec);
+  EXPECT_THAT(
+      finished->report().way,
+      StartsWith("in steps until all is injected, then directly: films[0].connective_tissue.entry_pressure_pa"));
+  run_to_its_end(*finished);
+  ASSERT_EQ(finished->phase(), Phase::kSettled) << finished->reason();
+  EXPECT_EQ(finished->reason(), "the settled shape was found directly") << finished->report().way;
+  EXPECT_GT(finished->report().closed_cells, 3);
+  EXPECT_LT(finished->report().closed_cells, 33);
+  EXPECT_LT(finished->report().film_volume_relative_error, 1e-12);
+  spec.goal = plan::TimeGoal::kTransient;
+  spec.settle_skin_speed = 1e-12;
+  spec.end = 1e6;
+  const auto stepped = make_small_simulation(spec);
+  while (stepped->phase() == Phase::kRunning &&
+         (stepped->report().time < 1.0 || stepped->report().settling_error > 1e-6)) {
+    stepped->advance_step();
+  }
+  EXPECT_EQ(stepped->report().closed_cells, finished->report().closed_cells);
+  const std::vector<float> a = skin_of(*finished), b = skin_of(*stepped);
+  ASSERT_EQ(a.size(), b.size());
+  for (size_t k = 0; k < a.size(); ++k) EXPECT_NEAR(a[k], b[k], 3e-3) << "millimetres";
+}
+
 TEST(DirectShape, AFinishedShapeIsTheSameFromSnapshots) {
   const auto whole = make_small_simulation(make_plan_with_ligaments(10.0, 0.5e-3));
   const auto begun = make_small_simulation(make_plan_with_ligaments(10.0, 0.5e-3));

@@ -56,7 +56,7 @@ absl::Status make_ground(const model::FaceModel& model, const plan::SimulationSp
     return absl::FailedPreconditionError(absl::StrCat(
         "the settled shape of this plan cannot be found at once, which a forecast needs: ", hindrance->text()));
   }
-  auto direct = DirectShape::create(model, ground.films, spec, *ground.stepper);
+  auto direct = DirectShape::create(model, ground.films, spec, *ground.stepper, ground.rest);
   if (!direct.ok()) return direct.status();
   ground.direct = *std::move(direct);
   return absl::OkStatus();

@@ -15,8 +15,8 @@ from lipofill.v1 import frame_service_pb2 as pb
 class Meshes:
     """The meshes of a simulation or a model at rest.
 
-    ``meshes["skin.points"]`` is an (n, 3) float32 array in mm, ``meshes["skin.cells"]`` the (m, 4)
-    uint32 indices into it.
+    ``meshes["skin.points"]`` is an (n, 3) array in mm, float32 or, for a scan far from the origin,
+    float64, ``meshes["skin.cells"]`` the (m, 4) uint32 indices into it.
 
     Attributes
     ----------

@@ -9,7 +9,6 @@
 namespace lipofill::testing {
 namespace {
 
-using ::testing::Contains;
 using ::testing::HasSubstr;
 
 /// A dome of 25 x 25 vertices over 120 mm, moved.
@@ -43,7 +42,7 @@ class ScanCheckTest : public CliTest {
 TEST_F(ScanCheckTest, SaysWhatWasFoundPassedOverAndMended) {
   const CommandResult text = run("lipofill scan check dome.obj");
   ASSERT_EQ(text.exit_code, 0) << text.output;
-  for (const char* said : {"625 vertices, 1153 triangles, 120 x 120 x 30 mm", "1 holes",
+  for (const char* said : {"625 vertices, 1153 triangles, 120 x 120 x 30 mm", "2 non-manifold edges",
                            "1 face of fewer than three corners left out", "1 vertex of no face left out",
                            "1 statement that shapes no polygon passed over: 'vc'", "triangle given more than once"}) {
     EXPECT_THAT(text.output, HasSubstr(said));
@@ -66,7 +65,7 @@ TEST_F(ScanCheckTest, RefusesWhatCannotBeRead) {
   write("bad.obj", "v 0 0 0\nv 1 0 zero\n");
   const CommandResult bad = run("lipofill scan check bad.obj");
   EXPECT_EQ(bad.exit_code, 2);
-  EXPECT_THAT(bad.output, HasSubstr("line 2: vertex coordinate 'zero' is not a number"));
+  EXPECT_THAT(bad.errors, HasSubstr("line 2: vertex coordinate 'zero' is not a number"));
   EXPECT_EQ(run("lipofill scan check none.obj").exit_code, 2);
 }
 

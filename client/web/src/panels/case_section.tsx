@@ -42,9 +42,16 @@ function Size() {
   if (!report) return null;
   const size = [report.sizeXMm, report.sizeYMm, report.sizeZMm].map((v) => v.toFixed(0)).join(" × ");
   return (
-    <p class="quiet">
-      {report.vertices.toLocaleString("en")} vertices, {size} mm
-    </p>
+    <>
+      <p class="quiet">
+        {report.vertices.toLocaleString("en")} vertices, {size} mm
+      </p>
+      {[...report.readRemarks, ...report.mendingRemarks].map((remark) => (
+        <p class="hint" key={remark}>
+          {remark}
+        </p>
+      ))}
+    </>
   );
 }
 

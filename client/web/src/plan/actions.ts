@@ -47,8 +47,17 @@ export function leaveOtherFace(next: Plan): void {
   remark.value = `This plan was made on ${of}, not on this face. Its landmarks, and all that was drawn or painted on that face, were left out.`;
 }
 
-/** A plan from a file; the scan and the landmarks of the page stay. */
+/**
+ * A plan from a file; the scan and the landmarks of the page stay.
+ * @throws Error for a plan of several parts of a face, of which the page shows one
+ */
 export function takePlan(next: Plan): void {
+  if (next.parts.length > 0) {
+    const names = next.parts.map(({ name }) => name).join(", ");
+    throw new Error(
+      `This plan has several parts of a face (${names}), and the page plans one part at a time. It was not opened; "lipofill run" carries out all of it.`,
+    );
+  }
   batch(() => {
     remark.value = "";
     leaveOtherFace(next);

@@ -6,12 +6,12 @@ import { trianglesOf, type Mesh } from "../api/meshes";
 import type { Rgb } from "./colour_maps";
 import { skinColour } from "./colour_maps";
 import { Surface } from "./surface";
-import { computeNormals } from "./surface_geometry";
+import { computeNormals, type Point } from "./surface_geometry";
 
 /** What moves less than this is still: it is less than a frame's fields resolve [mm]. */
 const stillMm = 0.01;
 /** Cells of what is still, where it is drawn coarser: a face is known in them [mm]. */
-const coarseMm = 6;
+const coarseMm = 5;
 /** Colours that differ by less look alike: what hardly moves is hardly tinted. */
 const faint = 8;
 /** Where more than this share of the triangles moves, it is not worth to part them. */
@@ -23,23 +23,36 @@ interface Part {
   vertices: Uint32Array;
 }
 
+/** Which vertex is drawn in place of another one, and the normals of all. */
+interface Clusters {
+  stands: Uint32Array;
+  normals: Float32Array;
+}
+
+/** Whether a triangle is turned against the normals of its corners. */
+function isTurned(points: Float32Array, normals: Float32Array, [a, b, c]: number[]): boolean {
+  const edge = (to: number): Point => [0, 1, 2].map((k) => points[3 * to + k] - points[3 * a + k]) as Point;
+  const [u, v] = [edge(b), edge(c)];
+  const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  const along = normal.map((value, k) => value * (normals[3 * a + k] + normals[3 * b + k] + normals[3 * c + k]));
+  return along[0] + along[1] + along[2] < 0;
+}
+
 /**
- * The triangles of a mesh that are chosen, with the vertices they use.
- * @param stands  the vertex that is drawn in place of another one; triangles that shrink to an edge
- *   or a point go
+ * The triangles of a mesh that are chosen, with the vertices they use. In clusters, triangles that
+ * shrink to an edge or a point go, and those that turn over are turned back: they would be dark.
  */
-function partOf(
-  mesh: Mesh,
-  triangles: Uint32Array,
-  isChosen: (first: number) => boolean,
-  stands: (vertex: number) => number = (vertex) => vertex,
-): Part {
+function partOf(mesh: Mesh, triangles: Uint32Array, isChosen: (first: number) => boolean, clusters?: Clusters): Part {
   const number = new Map<number, number>();
   const cells: number[] = [];
   for (let t = 0; t < triangles.length; t += 3) {
     if (!isChosen(t)) continue;
-    const corners = [stands(triangles[t]), stands(triangles[t + 1]), stands(triangles[t + 2])];
-    if (corners[0] === corners[1] || corners[1] === corners[2] || corners[2] === corners[0]) continue;
+    let corners = [triangles[t], triangles[t + 1], triangles[t + 2]];
+    if (clusters) {
+      corners = corners.map((vertex) => clusters.stands[vertex]);
+      if (corners[0] === corners[1] || corners[1] === corners[2] || corners[2] === corners[0]) continue;
+      if (isTurned(mesh.points, clusters.normals, corners)) corners.reverse();
+    }
     for (const vertex of corners) {
       let k = number.get(vertex);
       if (k === undefined) number.set(vertex, (k = number.size));
@@ -55,7 +68,7 @@ function partOf(
 /**
  * For each vertex the first one in its cell of a grid; vertices that are kept stand for themselves.
  */
-function clustered(points: Float32Array, isKept: Uint8Array): (vertex: number) => number {
+function clustered(points: Float32Array, isKept: Uint8Array): Uint32Array {
   const firstIn = new Map<string, number>();
   const stands = new Uint32Array(isKept.length);
   for (let vertex = 0; vertex < stands.length; ++vertex) {
@@ -66,7 +79,7 @@ function clustered(points: Float32Array, isKept: Uint8Array): (vertex: number) =
     if (first === undefined) firstIn.set(cell, vertex);
     else stands[vertex] = first;
   }
-  return (vertex) => stands[vertex];
+  return stands;
 }
 
 function gather(from: ArrayLike<number>, vertices: Uint32Array, to: Float32Array | Uint8Array): void {
@@ -192,7 +205,10 @@ export class MovingSurface {
     if (isCoarse && this.stillCoarse === undefined) {
       const { triangles, isMoving } = this;
       const stays = (t: number): boolean => !this.goes(t);
-      this.stillCoarse = partOf(this.mesh, triangles, stays, clustered(this.rest, isMoving));
+      this.stillCoarse = partOf(this.mesh, triangles, stays, {
+        stands: clustered(this.rest, isMoving),
+        normals: this.normals,
+      });
       this.place(this.stillCoarse);
       gather(this.colours, this.stillCoarse.vertices, this.stillCoarse.surface.colours);
       this.stillCoarse.surface.recolour();

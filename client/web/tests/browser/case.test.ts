@@ -98,6 +98,13 @@ describe("what was done", () => {
     await isSet(0);
   });
 
+  it("refuses a plan of several parts of a face, which it would show one of", async () => {
+    await page.getByLabel("Open plan…").setInputFiles(join(root, "client/examples/plans/several_parts.json"));
+    await page.getByText(/several parts of a face.*plans one part at a time/).waitFor();
+    await button("Dismiss").click();
+    expect(await button("Undo").isDisabled()).toBe(true);
+  });
+
   it("is taken back and done again: landmarks", async () => {
     await page.getByLabel("From file…").setInputFiles(halfFaceLandmarks);
     await isSet(11);

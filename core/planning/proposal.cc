@@ -11,7 +11,7 @@
 #include "core/base/field_violations.h"
 #include "core/base/units.h"
 #include "core/plan/coarse_plan.h"
-#include "core/planning/proposal_zones.h"
+#include "core/planning/proposal_candidate.h"
 
 namespace lipofill::planning {
 namespace {
@@ -27,16 +27,6 @@ constexpr double kSurelyWorth = 3.0;
 /// Shares of the work, of what is reported.
 constexpr double kSearchDone = 0.5;
 constexpr double kCurveDone = 0.95;
-
-/// A choice of zones with its best volumes.
-struct Candidate {
-  ZoneLayout layout;
-  std::unique_ptr<VolumeFit> fit;
-  FittedVolumes fitted;
-  double misfit = 0.0;  ///< of all skin, as if it were an rms of that which lacks something [m]
-
-  size_t n_used() const { return static_cast<size_t>((fitted.volumes.array() > 0.0).count()); }
-};
 
 absl::Status under(const char* prefix, const absl::Status& status) {
   if (field_violations_of(status).empty()) return status;
@@ -113,14 +103,6 @@ class ProposalSearch {
     return candidate;
   }
 
-  /// Nearer by what is worthwhile, or as near with fewer zones or less.
-  bool is_better(const Candidate& one, const Candidate& other) const {
-    if (one.misfit < other.misfit - request_.worthwhile) return true;
-    if (one.misfit > other.misfit + request_.worthwhile) return false;
-    if (one.n_used() != other.n_used()) return one.n_used() < other.n_used();
-    return one.misfit < other.misfit;
-  }
-
   /// The choices in the order in which a coarse model of the face has them come near, the one that
   /// is_better() first; those that it refuses last, as they are.
   absl::StatusOr<std::vector<size_t>> rank(const std::vector<ZoneLayout>& layouts) {
@@ -144,7 +126,7 @@ class ProposalSearch {
       if (absl::IsCancelled(candidate.status())) return candidate.status();
       if (!candidate.ok()) continue;  // a plane that this plan cannot use, or zones that bounds forbid
       misfits[k] = candidate->misfit;
-      if (best && !is_better(*candidate, *best)) continue;
+      if (best && !is_better(*candidate, *best, request_.worthwhile)) continue;
       best = *std::move(candidate);
       first = k;
     }

@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_format.h"
 #include "core/base/units.h"
-#include "core/planning/proposal_step.h"
+#include "core/planning/proposal_problem.h"
 
 namespace lipofill::planning {
 namespace {
@@ -28,8 +28,6 @@ constexpr double kLeastVolume = 2e-9;
 constexpr int kMaxHalvings = 5;
 /// Worse by less is as good: shapes that follow others are off by some 0.001 mm.
 constexpr double kAsGood = 1e-3;
-/// Pressure and lift are kept this far below their bounds, which shapes are true to.
-constexpr double kMargin = 5e-4;
 /// A bound is kept to where it is broken by no more than this share.
 constexpr double kTolerance = 1e-3;
 /// Volumes this near to a bound are held by it [m3], pressures and lifts within this share.
@@ -40,29 +38,7 @@ constexpr double kBackFromPathEnd = 0.9;
 
 constexpr double kPerMl = kCubicMetresPerMillilitre;
 
-double share_of_bound(double value, double bound) {
-  return std::isfinite(bound) ? value / bound : 0.0;
-}
-
 }  // namespace
-
-/// Volumes and the shape with them.
-struct VolumeFit::State {
-  VectorXd volumes;
-  VectorXd distance;           ///< of the points, 0 where there is no target opposite [m]
-  Eigen::Matrix3Xd direction;  ///< gradient of the distance
-  Eigen::Matrix3Xd skin;       ///< displacement of the nodes [m]
-  VectorXd pressure;           ///< of the zones [Pa]
-  double mean_square = 0.0;
-  double max_lift = 0.0;
-
-  /// The largest share by which a bound is broken, 0 where all are kept to.
-  double excess(const ProposalBounds& bounds) const {
-    return std::max({0.0, share_of_bound(volumes.sum(), bounds.max_total) - 1.0,
-                     share_of_bound(pressure.maxCoeff(), bounds.max_pressure) - 1.0,
-                     share_of_bound(max_lift, bounds.max_lift) - 1.0});
-  }
-};
 
 absl::StatusOr<std::unique_ptr<VolumeFit>> VolumeFit::create(std::shared_ptr<const model::FaceModel> model,
                                                              plan::SimulationSpec one_each,
@@ -83,13 +59,13 @@ VolumeFit::VolumeFit(std::unique_ptr<simulation::TrialShape> trial, std::vector<
       rest_distance_(rest_distance) {}
 
 /// The shape with these volumes; where not all goes in, that with what does.
-absl::StatusOr<VolumeFit::State> VolumeFit::evaluate(const VectorXd& volumes, bool from_last) {
+absl::StatusOr<FitState> VolumeFit::evaluate(const VectorXd& volumes, bool from_last) {
   simulation::TrialVolumes trial;
   for (size_t z = 0; z < zones_.size(); ++z) trial.injections.push_back({z, volumes[static_cast<Index>(z)]});
   if (const absl::Status found = trial_->find(trial, from_last); !found.ok()) return found;
   ++cost_.shapes;
   cost_.factorisations += trial_->shape().report().cost.factorisations;
-  State state;
+  FitState state;
   state.volumes = trial_->share() * volumes;
   state.skin = trial_->skin_displacement();
   state.max_lift = state.skin.colwise().norm().maxCoeff();
@@ -114,7 +90,7 @@ absl::StatusOr<VolumeFit::State> VolumeFit::evaluate(const VectorXd& volumes, bo
 }
 
 /// The first shape: zones filled with what the skin over them lacks.
-absl::StatusOr<VolumeFit::State> VolumeFit::begin(const ProposalBounds& bounds) {
+absl::StatusOr<FitState> VolumeFit::begin(const ProposalBounds& bounds) {
   VectorXd volumes(static_cast<Index>(zones_.size())), low(volumes.size());
   for (Index z = 0; z < volumes.size(); ++z) {
     const VolumeRange& range = zones_[static_cast<size_t>(z)].bounds;
@@ -145,61 +121,16 @@ absl::Status VolumeFit::differentiate() {
 }
 
 /// The volumes that are best where everything is linear in them.
-absl::StatusOr<VectorXd> VolumeFit::propose(const State& state, const ProposalBounds& bounds) const {
-  const auto n = static_cast<Index>(zones_.size());
-  const VectorXd weight = points_.area.cwiseSqrt();
-  BoundedProblem problem;
-  problem.start = state.volumes / kPerMl;
-  problem.matrix = kPerMl * (weight.asDiagonal() * slopes_.of_distance(points_, state.direction));
-  problem.right_side = problem.matrix * problem.start - weight.cwiseProduct(state.distance);
-  problem.low.resize(n);
-  problem.high.resize(n);
-  std::vector<VectorXd> rows;
-  std::vector<double> limits;
-  const auto limit = [&](const VectorXd& slope, double value, double bound) {
-    rows.push_back(kPerMl * slope);
-    limits.push_back((1.0 - kMargin) * bound - value + rows.back().dot(problem.start));
-  };
-  for (Index z = 0; z < n; ++z) {
-    problem.low[z] = zones_[static_cast<size_t>(z)].bounds.low / kPerMl;
-    problem.high[z] = zones_[static_cast<size_t>(z)].bounds.high / kPerMl;
-    if (std::isfinite(bounds.max_pressure)) {
-      limit(slopes_.pressure().row(z).transpose(), state.pressure[z], bounds.max_pressure);
-    }
-  }
-  if (std::isfinite(bounds.max_total)) {
-    rows.push_back(VectorXd::Ones(n));
-    limits.push_back(bounds.max_total / kPerMl);
-  }
-  if (std::isfinite(bounds.max_lift)) {
-    // Where each zone lifts most, and where the skin is highest now.
-    std::vector<Index> crowns(zones_.size() + 1);
-    state.skin.colwise().norm().maxCoeff(&crowns.back());
-    for (size_t z = 0; z < zones_.size(); ++z) slopes_.skin()[z].colwise().norm().maxCoeff(&crowns[z]);
-    for (const Index node : crowns) {
-      const double lift = state.skin.col(node).norm();
-      VectorXd slope(n);
-      for (Index z = 0; z < n; ++z) {
-        slope[z] = lift > 0.0 ? state.skin.col(node).dot(slopes_.skin()[static_cast<size_t>(z)].col(node)) / lift : 0.0;
-      }
-      limit(slope, lift, bounds.max_lift);
-    }
-  }
-  problem.slope.resize(static_cast<Index>(rows.size()), n);
-  problem.limit.resize(problem.slope.rows());
-  for (size_t row = 0; row < rows.size(); ++row) {
-    problem.slope.row(static_cast<Index>(row)) = rows[row].transpose();
-    problem.limit[static_cast<Index>(row)] = limits[row];
-  }
-  auto found = solve_bounded(problem);
+absl::StatusOr<VectorXd> VolumeFit::propose(const FitState& state, const ProposalBounds& bounds) const {
+  const auto found = solve_bounded(linearise(state, slopes_, points_, zones_, bounds));
   if (!found.ok()) return found.status();
   return VectorXd(kPerMl * *found);
 }
 
 /// The shape with the wanted volumes, or with a part of the step to them where that makes things
 /// worse or the tissue does not take it; the state itself where no part helps.
-absl::StatusOr<VolumeFit::State> VolumeFit::try_step(const State& state, const VectorXd& wanted,
-                                                     const ProposalBounds& bounds) {
+absl::StatusOr<FitState> VolumeFit::try_step(const FitState& state, const VectorXd& wanted,
+                                             const ProposalBounds& bounds) {
   VectorXd step = wanted - state.volumes;
   for (int k = 0; k <= kMaxHalvings; ++k, step *= 0.5) {
     auto next = evaluate(state.volumes + step, true);
@@ -219,7 +150,7 @@ absl::StatusOr<FittedVolumes> VolumeFit::find(const ProposalBounds& bounds, cons
   cost_ = {};
   auto begun = begin(bounds);
   if (!begun.ok()) return begun.status();
-  State state = *std::move(begun);
+  FitState state = *std::move(begun);
   VectorXd wanted = state.volumes;
   for (int step = 0; step < kMaxSteps; ++step) {
     if (const absl::Status status = check_wanted(unwanted); !status.ok()) return status;
@@ -269,7 +200,7 @@ absl::StatusOr<VectorXd> VolumeFit::find_member_pressures(const std::vector<Vect
   return VectorXd(pressures->colwise().maxCoeff().transpose());
 }
 
-std::vector<Bound> VolumeFit::find_bounds(const State& state, const ProposalBounds& bounds) const {
+std::vector<Bound> VolumeFit::find_bounds(const FitState& state, const ProposalBounds& bounds) const {
   std::vector<Bound> found(zones_.size(), Bound::kNone);
   const bool total = state.volumes.sum() > bounds.max_total - kAtBound * static_cast<double>(zones_.size());
   const bool lift = state.max_lift > (1.0 - kAtShare) * bounds.max_lift;
@@ -296,7 +227,7 @@ std::vector<Bound> VolumeFit::find_bounds(const State& state, const ProposalBoun
   return found;
 }
 
-FittedVolumes VolumeFit::describe(const State& state, const ProposalBounds& bounds) const {
+FittedVolumes VolumeFit::describe(const FitState& state, const ProposalBounds& bounds) const {
   FittedVolumes fitted;
   fitted.volumes = state.volumes;
   fitted.pressure = state.pressure;

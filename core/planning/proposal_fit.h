@@ -9,6 +9,7 @@
 #include "core/base/unwanted.h"
 #include "core/planning/proposal_bounds.h"
 #include "core/planning/proposal_points.h"
+#include "core/planning/proposal_problem.h"
 #include "core/planning/proposal_zones.h"
 #include "core/planning/volume_slopes.h"
 #include "core/simulation/trial_shape.h"
@@ -69,16 +70,15 @@ class VolumeFit {
   const std::vector<SoughtZone>& zones() const { return zones_; }
 
  private:
-  struct State;
   VolumeFit(std::unique_ptr<simulation::TrialShape> trial, std::vector<SoughtZone> zones, const SkinPoints& points,
             const TargetDistance& target, const Eigen::VectorXd& rest_distance);
-  absl::StatusOr<State> evaluate(const Eigen::VectorXd& volumes, bool from_last);
-  absl::StatusOr<State> begin(const ProposalBounds& bounds);
-  absl::StatusOr<State> try_step(const State& state, const Eigen::VectorXd& wanted, const ProposalBounds& bounds);
+  absl::StatusOr<FitState> evaluate(const Eigen::VectorXd& volumes, bool from_last);
+  absl::StatusOr<FitState> begin(const ProposalBounds& bounds);
+  absl::StatusOr<FitState> try_step(const FitState& state, const Eigen::VectorXd& wanted, const ProposalBounds& bounds);
   absl::Status differentiate();
-  absl::StatusOr<Eigen::VectorXd> propose(const State& state, const ProposalBounds& bounds) const;
-  FittedVolumes describe(const State& state, const ProposalBounds& bounds) const;
-  std::vector<Bound> find_bounds(const State& state, const ProposalBounds& bounds) const;
+  absl::StatusOr<Eigen::VectorXd> propose(const FitState& state, const ProposalBounds& bounds) const;
+  FittedVolumes describe(const FitState& state, const ProposalBounds& bounds) const;
+  std::vector<Bound> find_bounds(const FitState& state, const ProposalBounds& bounds) const;
 
   std::unique_ptr<simulation::TrialShape> trial_;
   std::vector<SoughtZone> zones_;

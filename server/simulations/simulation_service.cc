@@ -12,6 +12,7 @@
 #include "server/entry/unary.h"
 #include "server/simulations/checkpoint_calls.h"
 #include "server/simulations/injection_calls.h"
+#include "server/simulations/session_replies.h"
 #include "server/simulations/shape_stream.h"
 #include "server/simulations/timely_look.h"
 #include "server/simulations/tissue_deck.h"
@@ -24,44 +25,6 @@ namespace lipofill::server {
 namespace {
 
 using Reactor = grpc::ServerUnaryReactor;
-
-/// Answers with the session's view and the record it belongs to.
-Session::Reply reply_to(Backend& backend, const std::string& id, Reactor* reactor, v1::Simulation* response,
-                        const std::function<void(v1::Simulation&)>& amend = nullptr) {
-  return [&backend, id, reactor, response, amend](const absl::StatusOr<SessionView>& view) {
-    const absl::Status done = guarded([&]() -> absl::Status {
-      if (!view.ok()) return view.status();
-      const auto record = backend.store.get_simulation(id);
-      if (record.ok()) *response = to_simulation(*record, &*view);
-      if (record.ok() && amend != nullptr) amend(*response);
-      return record.status();
-    });
-    reactor->Finish(to_grpc_status(done));
-  };
-}
-
-/// Answers a command when there is no session: the simulation has ended, perhaps by an equal
-/// request, or could not be brought back.
-absl::Status answer_without_session(Backend& backend, const SimulationRecord& record, const char* what,
-                                    const RequestKey& key, v1::Simulation& response) {
-  const auto earlier = backend.store.find_request(key);
-  if (!earlier.ok()) return earlier.status();
-  if (!earlier->has_value()) return no_session_for(backend, what, record);
-  response = show_without_session(backend, record);
-  return absl::OkStatus();
-}
-
-void wake_and_act(Backend& backend, const std::string& id, const RequestKey& key, const SimulationService::Act& act,
-                  const Unwanted& unwanted, const Session::Reply& reply) {
-  absl::StatusOr<std::shared_ptr<Session>> session = nullptr;
-  const absl::Status woken = guarded_if_wanted(unwanted, [&] {
-    session = find_or_wake(backend, id);
-    return session.status();
-  });
-  if (!woken.ok()) return reply(woken);
-  if (*session == nullptr) return reply(absl::UnavailableError("the simulation ended at this moment; try again"));
-  act(**session, key, reply);
-}
 
 }  // namespace
 

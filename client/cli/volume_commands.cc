@@ -90,9 +90,10 @@ absl::StatusOr<ExitCode> list_dicom_series(const Application& application, const
     return ExitCode::kOk;
   }
   for (const DicomSeries& series : listing->series) print_series(series);
-  std::cout << absl::StrFormat("%d series of %d patients; %d files without an image, %d of other kinds, %d cut short\n",
-                               listing->series.size(), listing->patients, listing->without_image, listing->other_files,
-                               listing->unreadable_files);
+  std::cout << absl::StrFormat(
+      "series: %d, patients: %d; files without an image: %d, of other kinds: %d, cut short: %d\n",
+      listing->series.size(), listing->patients, listing->without_image, listing->other_files,
+      listing->unreadable_files);
   return ExitCode::kOk;
 }
 
@@ -179,9 +180,11 @@ void add_volume_commands(CLI::App& scan, Application& application) {
       ->add_option("--isovalue", options->extraction.isovalue,
                    "in the volume's values; -300 (the default) is the skin in HU, 250 the bone")
       ->capture_default_str();
-  command->add_option("--label", options->extraction.labels,
-                      "of a label map: the surface around voxels with this number, may be repeated; --smooth takes "
-                      "its steps away");
+  command
+      ->add_option("--label", options->extraction.labels,
+                   "of a label map: the surface around voxels with this number, may be repeated; --smooth takes "
+                   "its steps away")
+      ->allow_extra_args(false);
   command->add_flag("--all", options->extraction.all_components,
                     "take every piece, not only the largest connected one");
   command

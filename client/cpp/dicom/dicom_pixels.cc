@@ -7,6 +7,7 @@
 #include <dcmtk/dcmdata/dcpxitem.h>
 #include <dcmtk/dcmdata/dctk.h>
 
+#include <array>
 #include <cstring>
 
 #include "absl/strings/numbers.h"
@@ -107,7 +108,11 @@ absl::StatusOr<PixelFormat> DicomPixels::format_of(const DicomFrame& frame) {
 absl::Status DicomPixels::read(const DicomFrame& frame, std::vector<int32_t>* pixels) {
   if (auto status = open(frame.file); !status.ok()) return status;
   pixels->resize(size_t{frame.columns} * frame.rows);
-  return is_jpeg2000(file_->syntax) ? read_jpeg2000(frame, pixels) : read_stored(frame, pixels);
+  if (is_jpeg2000(file_->syntax)) return read_jpeg2000(frame, pixels);
+  if (file_->syntax == EXS_RLELossless) {
+    if (auto status = check_rle(frame); !status.ok()) return status;
+  }
+  return read_stored(frame, pixels);
 }
 
 absl::Status DicomPixels::read_stored(const DicomFrame& frame, std::vector<int32_t>* pixels) {
@@ -135,31 +140,53 @@ absl::Status DicomPixels::read_stored(const DicomFrame& frame, std::vector<int32
   return absl::OkStatus();
 }
 
-absl::Status DicomPixels::read_jpeg2000(const DicomFrame& frame, std::vector<int32_t>* pixels) {
+/// The packed bytes of one image. The first item of a sequence is a table of offsets; then comes
+/// one for each frame, but an image alone may come in pieces.
+absl::StatusOr<std::vector<uint8_t>> DicomPixels::packed_image(const DicomFrame& frame) {
   DcmPixelSequence* sequence = nullptr;
   E_TransferSyntax syntax = file_->syntax;
   const DcmRepresentationParameter* parameter = nullptr;
   file_->pixels->getOriginalRepresentationKey(syntax, parameter);
   if (file_->pixels->getEncapsulatedRepresentation(syntax, parameter, sequence).bad() || sequence == nullptr)
-    return absl::InvalidArgumentError("has JPEG 2000 pixels that are damaged");
+    return absl::InvalidArgumentError("has packed pixels that are damaged");
   const int64_t frames = whole_number_of(file_->format.getDataset(), DCM_NumberOfFrames, 1);
   const auto items = static_cast<int64_t>(sequence->card());
-  // The first item is a table of offsets. An image alone may come in pieces.
   if (frames > 1 && items != frames + 1)
-    return absl::InvalidArgumentError(absl::StrCat("has ", frames, " images of JPEG 2000 in ", items - 1, " pieces"));
+    return absl::InvalidArgumentError(absl::StrCat("has ", frames, " packed images in ", items - 1, " pieces"));
   std::vector<uint8_t> packed;
   for (int64_t item = 1 + (frames > 1 ? frame.number : 0); item < (frames > 1 ? frame.number + 2 : items); ++item) {
     DcmPixelItem* piece = nullptr;
     Uint8* bytes = nullptr;
     if (sequence->getItem(piece, static_cast<unsigned long>(item)).bad() || piece->getUint8Array(bytes).bad() ||
         bytes == nullptr)
-      return absl::InvalidArgumentError("has JPEG 2000 pixels that are cut short");
+      return absl::InvalidArgumentError("has packed pixels that are cut short");
     packed.insert(packed.end(), bytes, bytes + piece->getLength());
   }
-  auto decoded = decode_jpeg2000(packed, frame.columns, frame.rows);
+  return packed;
+}
+
+absl::Status DicomPixels::read_jpeg2000(const DicomFrame& frame, std::vector<int32_t>* pixels) {
+  const auto packed = packed_image(frame);
+  if (!packed.ok()) return packed.status();
+  auto decoded = decode_jpeg2000(*packed, frame.columns, frame.rows);
   if (!decoded.ok()) return decoded.status();
   *pixels = *std::move(decoded);
   return absl::OkStatus();
+}
+
+absl::Status DicomPixels::check_rle(const DicomFrame& frame) {
+  const auto packed = packed_image(frame);
+  if (!packed.ok()) return packed.status();
+  std::array<uint32_t, 16> header{};
+  const absl::Status damaged = absl::InvalidArgumentError("has RLE pixels that are damaged or cut short");
+  if (packed->size() < sizeof header) return damaged;
+  std::memcpy(header.data(), packed->data(), sizeof header);
+  const uint32_t segments = header[0];
+  if (segments < 1 || segments >= header.size() || header[1] != sizeof header) return damaged;
+  for (uint32_t k = 2; k <= segments; ++k) {
+    if (header[k] < header[k - 1]) return damaged;
+  }
+  return header[segments] <= packed->size() ? absl::OkStatus() : damaged;
 }
 
 }  // namespace lipofill::client

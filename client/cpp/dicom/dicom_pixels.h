@@ -45,6 +45,10 @@ class DicomPixels {
   absl::Status open(const std::filesystem::path& file);
   absl::Status read_stored(const DicomFrame& frame, std::vector<int32_t>* pixels);
   absl::Status read_jpeg2000(const DicomFrame& frame, std::vector<int32_t>* pixels);
+  absl::StatusOr<std::vector<uint8_t>> packed_image(const DicomFrame& frame);
+  /// DCMTK believes the header of an RLE image, in which offsets of segments stand (PS3.5, G.5),
+  /// and reads beyond its end where they lie.
+  absl::Status check_rle(const DicomFrame& frame);
 
   std::unique_ptr<OpenFile> file_;
 };

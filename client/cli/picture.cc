@@ -52,6 +52,7 @@ absl::Status draw_picture(const std::filesystem::path& folder, Picture picture, 
                                       "--in-this-process"};
   if (picture == Picture::kDistance) command.push_back("--distance");
   if (picture == Picture::kScan) command.push_back("--scan");
+  if (picture == Picture::kDeficit) command.push_back("--deficit");
   absl::Status status = absl::FailedPreconditionError(kNoScreen);
   if (has_display()) status = run_drawing(command);
   if (!absl::IsFailedPrecondition(status)) return status;

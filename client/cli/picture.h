@@ -6,7 +6,7 @@
 
 namespace lipofill::client {
 
-enum class Picture { kResult, kDistance, kScan };
+enum class Picture { kResult, kDistance, kScan, kDeficit };
 
 /// What the folder of a scan to be drawn holds.
 inline constexpr char kScanToDraw[] = "scan.vtp";

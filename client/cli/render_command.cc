@@ -4,6 +4,7 @@
 #include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "client/cli/application.h"
+#include "client/cli/deficit_sheet.h"
 #include "client/cli/picture.h"
 #include "client/cli/process.h"
 #include "client/cli/result_figures.h"
@@ -11,6 +12,7 @@
 #include "client/cli/run_record.h"
 #include "client/cpp/io/result_folder.h"
 #include "client/cpp/json_file.h"
+#include "client/cpp/picture/deficit_picture.h"
 #include "client/cpp/picture/result_picture.h"
 #include "client/cpp/picture/scan_picture.h"
 #include "client/cpp/result_text.h"
@@ -35,6 +37,7 @@ struct Options {
   std::string out;
   bool distance = false;
   bool scan = false;
+  bool deficit = false;
   bool in_this_process = false;
 };
 
@@ -50,8 +53,16 @@ absl::Status draw_scan_here(const Options& options) {
   return draw_scan_picture(request);
 }
 
+absl::Status draw_deficit_here(const Options& options) {
+  auto request = read_deficit_request(options.result);
+  if (!request.ok()) return request.status();
+  request->png = options.out;
+  return draw_deficit_picture(*request);
+}
+
 absl::Status draw_here(const Options& options) {
   if (options.scan) return draw_scan_here(options);
+  if (options.deficit) return draw_deficit_here(options);
   const auto record = read_run_record(options.result);
   if (!record.ok()) return record.status();
   PictureRequest request;
@@ -120,6 +131,7 @@ void add_render_command(CLI::App& root, Application& application) {
                     "the distance to the target that lipofill evaluate found, in place of displacement and pressure");
   // These options are hidden: they are for the child that lipofill starts under an X server.
   command->add_flag("--scan", options->scan)->group("");
+  command->add_flag("--deficit", options->deficit)->group("");
   command->add_flag("--in-this-process", options->in_this_process)->group("");
 }
 

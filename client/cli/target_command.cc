@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/application.h"
+#include "client/cli/deficit_sheet.h"
 #include "client/cli/describe.h"
 #include "client/cli/listing.h"
 #include "client/cli/private_daemon.h"
@@ -34,6 +35,7 @@ struct Options {
   std::string surface_landmarks;
   std::string patient;
   std::string out;
+  std::string sheet;
   v1::ScanUnit unit = v1::MILLIMETRE;
   v1::ScanUnit surface_unit = v1::MILLIMETRE;
   std::optional<double> rim_mm;
@@ -140,10 +142,15 @@ absl::StatusOr<ExitCode> make_on(Application& application, const Connection& con
   measure.set_scan(request->spec().scan());
   *measure.mutable_landmarks_mm() = request->spec().landmarks_mm();
   measure.set_target_scan(target->scan());
-  measure.set_figures_only(true);
+  measure.set_figures_only(options.sheet.empty());
   if (options.rim_mm) measure.set_rim_mm(*options.rim_mm);
-  const auto deficit = measure_deficit(connection, measure);
+  auto deficit = measure_deficit(connection, measure);
   if (!deficit.ok()) return deficit.status();
+  if (!options.sheet.empty()) {
+    const absl::Status drawn = draw_deficit_sheet(connection, request->spec(), *deficit, options.sheet);
+    if (!drawn.ok()) return drawn;
+    deficit->clear_distance_mm();
+  }
   if (!options.out.empty()) {
     const auto surface = download_scan_mesh(connection, target->scan());
     if (!surface.ok()) return surface.status();
@@ -179,12 +186,14 @@ void add_target_command(CLI::App& root, Application& application) {
       "lacks to it, in mL by region. Files alone are computed here; with a patient or scans of the daemon the target "
       "is kept there",
       "  lipofill target face.obj --landmarks face.json --healthy right\n"
+      "  lipofill target face.obj --landmarks face.json --healthy right --sheet missing.png\n"
       "  lipofill target before.obj --landmarks before.json --surface after.ply --out target.obj\n"
       "  lipofill target patients/case-7/scans/abc --landmarks face.json --healthy left --json\n",
       [&application, options] { return make(application, *options); });
   command->add_option("face", options->face, "the face as it is: .obj, .ply or .stl, or patients/ID/scans/ID")
       ->required();
-  command->add_option("--landmarks", options->landmarks, "its landmarks, FILE.json, FILE.json#OBJECT, .mrk.json, .fcsv, .pp or .csv");
+  command->add_option("--landmarks", options->landmarks,
+                      "its landmarks, FILE.json, FILE.json#OBJECT, .mrk.json, .fcsv, .pp or .csv");
   command->add_option("--healthy", options->healthy, "mirror this side, the subject's own: left or right")
       ->check(CLI::IsMember({"left", "right"}));
   command->add_option("--surface", options->surface,
@@ -195,6 +204,8 @@ void add_target_command(CLI::App& root, Application& application) {
   command->add_option("--patient", options->patient, "patients/ID, or the ID alone: keep scans and target there");
   command->add_option("--rim", options->rim_mm, "mm of skin that are left out where scan or target end; default 5");
   command->add_option("--out", options->out, "write the target to this .obj, in mm");
+  command->add_option("--sheet", options->sheet, "draw what is missing on the face, with its figures by region")
+      ->type_name("FILE.png");
   command->add_option("--unit", options->unit, "unit of the face's numbers: mm (default), cm or m")
       ->transform(CLI::CheckedTransformer(kUnitNames));
   command->add_option("--surface-unit", options->surface_unit, "unit of the surface's numbers")

@@ -63,6 +63,18 @@ TEST_F(TargetTest, OfTheHealthySideAndOfAnEarlierScanAgree) {
   EXPECT_THAT(text.output, HasSubstr("symmetry index"));
 }
 
+TEST_F(TargetTest, DrawsWhatIsMissing) {
+  const auto drawn = answer_of("lipofill target face.obj --landmarks face.json --healthy right --sheet missing.png");
+  EXPECT_FALSE(drawn["deficit"].contains("distance_mm")) << "the map is in the picture";
+  const std::string png = read("missing.png");
+  ASSERT_GT(png.size(), 24u);
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_EQ(png.substr(16, 8), std::string("\0\0\x07\xd0\0\0\x03\x84", 8)) << "2000 x 900 pixels";
+  const CommandResult refused = run("lipofill target face.obj --landmarks face.json --healthy right --sheet no/m.png");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("no/m.png"));
+}
+
 TEST_F(TargetTest, IsKeptOnADaemonForEvaluations) {
   const DaemonProcess daemon((folder_ / "data").string());
   const std::string lipofill = "env LIPOFILL_SERVER=" + daemon.address() + " lipofill ";

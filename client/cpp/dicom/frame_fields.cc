@@ -7,6 +7,12 @@
 #include "absl/strings/str_split.h"
 
 namespace lipofill::client {
+namespace {
+
+/// A list of the offsets of ten thousand frames has less.
+constexpr Uint32 kMaxTextBytes = 1 << 20;
+
+}  // namespace
 
 FrameFields::FrameFields(DcmItem* data_set, unsigned long frame) : data_set_(data_set) {
   if (data_set->findAndGetSequenceItem(DCM_SharedFunctionalGroupsSequence, shared_, 0).bad()) shared_ = nullptr;
@@ -38,6 +44,9 @@ std::optional<std::vector<double>> FrameFields::numbers(const DcmTagKey& group, 
 }
 
 std::string text_of(DcmItem* data_set, const DcmTagKey& tag) {
+  // A damaged file may claim a text of any length, for which memory would be taken.
+  DcmElement* element = nullptr;
+  if (data_set->findAndGetElement(tag, element).bad() || element->getLength() > kMaxTextBytes) return {};
   OFString text;
   if (data_set->findAndGetOFStringArray(tag, text).bad()) return {};
   return std::string(absl::StripAsciiWhitespace(absl::string_view(text.c_str(), text.size())));

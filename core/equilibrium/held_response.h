@@ -28,8 +28,8 @@ struct Question {
 /// A^T of a shape (n_dofs, n_rows): the rows of B summed a pool, and those of closed cells.
 Eigen::MatrixXd find_rows(const Eigen::SparseMatrix<double>& derivative, const Pools& pools, const Shape& shape);
 
-/// A C of rows A^T (n_dofs, n_rows) and columns C. Where there are many, most are of a cell each, and
-/// hardly any of their values differ from 0.
+/// A C of rows A^T (n_dofs, n_rows) and columns C. Where there are many, most are of a cell each,
+/// and hardly any of their values differ from 0.
 Eigen::MatrixXd multiply_rows(const Eigen::MatrixXd& rows, const Eigen::MatrixXd& columns);
 
 /// The answer of tissue and pools to what is out of balance, by a factor that may be of an earlier

@@ -12,7 +12,8 @@ namespace lipofill::equilibrium {
 
 /// The pools of all films on tissue: cells that open edges and leaky walls connect, so that fat at
 /// rest holds one head in them. Cells are numbered as rows of the gap system. A zone in two pieces
-/// is two pools, and a cell that fat has yet to enter is one of its own. Checked by tests/unit/equilibrium/pools_test.cc.
+/// is two pools, and a cell that fat has yet to enter is one of its own. Checked by
+/// tests/unit/equilibrium/pools_test.cc.
 struct Pools {
   std::vector<int> of_cell;        ///< pool of each cell on tissue
   std::vector<std::string> names;  ///< of each pool: its zones, joined by " + "

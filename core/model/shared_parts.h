@@ -33,8 +33,8 @@ struct SharedParts {
   SharedCache<RestResponse> rest_responses;
 };
 
-/// Keys over all that a part is made from. What depends on the pattern of the tissue alone - how its
-/// hexahedra hang together, what holds them - is shared by tissues of every thickness.
+/// Keys over all that a part is made from. What depends on the pattern alone (how its
+/// hexahedra hang together, what holds them) is shared by tissues of every thickness.
 std::string key_of_pattern(const solid::HexMesh& mesh, const solid::NodeSupports& supports,
                            const std::vector<solid::WallSpring>& springs);
 std::string key_of_tissue(const std::string& pattern_key, const solid::HexMesh& mesh,

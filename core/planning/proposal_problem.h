@@ -25,9 +25,9 @@ struct FitState {
   double excess(const ProposalBounds& bounds) const;
 };
 
-/// The problem of a Gauss-Newton step: volumes [mL] with which the distances are least by area, all
-/// being linear in them, within the bounds of volumes, pressures, their total, and the lift where it
-/// is largest. Checked by tests/unit/planning/proposal_test.cc.
+/// The problem of a Gauss-Newton step: volumes [mL] with which distances are least by area, all
+/// being linear in them, within the bounds of volumes, pressures, their total, and the lift where
+/// it is largest. Checked by tests/unit/planning/proposal_test.cc.
 /// @param slopes  at the state
 BoundedProblem linearise(const FitState& state, const VolumeSlopes& slopes, const SkinPoints& points,
                          const std::vector<SoughtZone>& zones, const ProposalBounds& bounds);

@@ -13,8 +13,8 @@
 namespace lipofill::simulation {
 namespace {
 
-/// Steps between tries to finish a plan whose fat entered more tissue than a try had it: a try costs
-/// about as much as they do.
+/// Steps between tries to finish a plan whose fat entered more tissue than a try had it: a try
+/// costs about as much as they do.
 constexpr uint64_t kStepsBetweenTries = 8;
 /// Every cell that fat has yet to enter holds its own volume. With more of them the rows of the
 /// direct solution take more time and memory than steps.
@@ -103,9 +103,9 @@ bool Simulation::Impl::is_time_to_finish() const {
   return !find_film_to_be_entered(films, next) && (is_just_injected() || state.step % kStepsBetweenTries == 0);
 }
 
-/// The settled shape of what has been injected in steps, with the ligaments that hold and the tissue
-/// that fat has entered. False where there is none, or where in it a ligament breaks or fat enters
-/// more; the plan is then stepped on.
+/// The settled shape of what has been injected in steps, with the ligaments that hold and the
+/// tissue that fat has entered. False where there is none, or where in it a ligament breaks or fat
+/// enters more; the plan is then stepped on.
 bool Simulation::Impl::finish() {
   const Eigen::Index n_to_enter = count_cells_to_enter(state);
   if (n_to_enter > kMostCellsToEnter) {

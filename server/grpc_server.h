@@ -20,6 +20,7 @@
 #include "server/ops/socket_claim.h"
 #include "server/patients/operation_service.h"
 #include "server/patients/patient_service.h"
+#include "server/planning/forecast_service.h"
 #include "server/planning/planning_service.h"
 #include "server/simulations/simulation_service.h"
 
@@ -80,12 +81,18 @@ class GrpcServer {
   CallGate gate_;
   struct Services {
     explicit Services(Backend& backend)
-        : patients(backend), operations(backend), simulations(backend), frames(backend), planning(backend) {}
+        : patients(backend),
+          operations(backend),
+          simulations(backend),
+          frames(backend),
+          planning(backend),
+          forecasts(backend) {}
     PatientService patients;
     OperationService operations;
     SimulationService simulations;
     FrameService frames;
     PlanningService planning;
+    ForecastService forecasts;
   };
   Services services_;
   std::unique_ptr<grpc::Server> server_;

@@ -9,6 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/application.h"
+#include "client/cli/forecast_command.h"
 #include "client/cpp/errors.h"
 #include "client/cpp/nearest_name.h"
 #include "client/cpp/result_text.h"
@@ -38,6 +39,7 @@ void add_all_commands(CLI::App& root, Application& application) {
   add_evaluate_command(root, application);
   add_propose_command(root, application);
   add_deliver_command(root, application);
+  add_forecast_commands(root, application);
   add_shape_command(root, application);
   add_target_command(root, application);
   add_render_command(root, application);

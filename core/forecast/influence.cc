@@ -13,20 +13,21 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Of a variable by itself at most, and products to select from at most, as a share of the members.
-constexpr int kMaxDegree = 8;
-constexpr double kProductsShare = 0.75;
+/// Strata of the hyperbolic set at most, and products to select from at most, as a share of the
+/// members.
+constexpr int kMaxStratum = 40;
+constexpr double kProductsShare = 0.5;
 /// Draws of the members for the errors.
 constexpr int kDraws = 100;
 /// A figure that varies by less than this share of its size does not vary.
 constexpr double kLeastVariation = 1e-9;
 
-int choose_degree(int inputs, Index members) {
-  int degree = 1;
-  while (degree < kMaxDegree && count_terms(inputs, degree + 1) <= kProductsShare * static_cast<double>(members)) {
-    ++degree;
+int choose_stratum(int inputs, Index members) {
+  int stratum = 1;
+  while (stratum < kMaxStratum && count_terms(inputs, stratum + 1) <= kProductsShare * static_cast<double>(members)) {
+    ++stratum;
   }
-  return degree;
+  return stratum;
 }
 
 double evaluate(const Term& term, const std::vector<bool>& is_gaussian, const MatrixXd& standard, Index member) {
@@ -135,8 +136,8 @@ Influences find_influences(const MatrixXd& standard, const std::vector<bool>& is
   const double scale = std::sqrt((figure.array() - figure.mean()).square().mean());
   if (is_gaussian.empty() || !(scale > kLeastVariation * figure.cwiseAbs().maxCoeff())) return influences;
   const VectorXd scaled = (figure.array() - figure.mean()) / scale;
-  const int degree = choose_degree(static_cast<int>(is_gaussian.size()), standard.rows());
-  const std::vector<Term> terms = select_terms(standard, is_gaussian, scaled, degree);
+  const int stratum = choose_stratum(static_cast<int>(is_gaussian.size()), standard.rows());
+  const std::vector<Term> terms = select_terms(standard, is_gaussian, scaled, stratum);
   const MatrixXd values = evaluate_all(terms, is_gaussian, standard);
   const VectorXd coefficients = values.colPivHouseholderQr().solve(scaled);
   influences.unexplained = leave_one_out(values, scaled, scaled - values * coefficients);

@@ -18,6 +18,8 @@
 #include <openturns/TBB.hxx>
 #include <openturns/Uniform.hxx>
 
+#include "core/coupling/algebra_threads.h"
+
 namespace lipofill::forecast {
 namespace {
 
@@ -29,8 +31,9 @@ std::mutex& turns() {
   return mutex;
 }
 
-/// It neither prints nor starts threads of its own.
+/// It neither prints nor starts threads of its own, nor does the algebra below it.
 void hush() {
+  coupling::pin_algebra_to_this_thread();
   OT::Log::Show(OT::Log::NONE);
   OT::TBB::Disable();
 }
@@ -65,13 +68,13 @@ Eigen::MatrixXd draw_points(int n, int dimensions) {
   return values;
 }
 
-int count_terms(int inputs, int degree) {
+int count_terms(int inputs, int stratum) {
   const std::lock_guard lock(turns());
-  return static_cast<int>(enumerate(inputs).getStrataCumulatedCardinal(static_cast<OT::UnsignedInteger>(degree)));
+  return static_cast<int>(enumerate(inputs).getStrataCumulatedCardinal(static_cast<OT::UnsignedInteger>(stratum)));
 }
 
 std::vector<Term> select_terms(const Eigen::MatrixXd& standard, const std::vector<bool>& is_gaussian,
-                               const Eigen::VectorXd& figure, int degree) {
+                               const Eigen::VectorXd& figure, int stratum) {
   const std::lock_guard lock(turns());
   hush();
   OT::ComposedDistribution::DistributionCollection measures;
@@ -87,7 +90,7 @@ std::vector<Term> select_terms(const Eigen::MatrixXd& standard, const std::vecto
   }
   const auto order = enumerate(static_cast<int>(is_gaussian.size()));
   const OT::OrthogonalProductPolynomialFactory products(families, order);
-  const OT::FixedStrategy all(products, order.getStrataCumulatedCardinal(static_cast<OT::UnsignedInteger>(degree)));
+  const OT::FixedStrategy all(products, order.getStrataCumulatedCardinal(static_cast<OT::UnsignedInteger>(stratum)));
   const OT::Sample members = to_sample(standard), values = to_sample(figure);
   const OT::LeastSquaresStrategy selection(
       members, values, OT::LeastSquaresMetaModelSelectionFactory(OT::LARS(), OT::CorrectedLeaveOneOut()));

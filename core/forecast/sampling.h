@@ -21,10 +21,10 @@ using Term = std::vector<int>;
 /// & Sudret 2011).
 /// @param standard     variables of the members (n, inputs)
 /// @param is_gaussian  an input: it is normal, else uniform on [-1, 1]
-/// @param degree       the largest degree of a variable by itself
+/// @param stratum      of the hyperbolic set: products enter by strata of equal size of their degrees
 std::vector<Term> select_terms(const Eigen::MatrixXd& standard, const std::vector<bool>& is_gaussian,
-                               const Eigen::VectorXd& figure, int degree);
+                               const Eigen::VectorXd& figure, int stratum);
 /// How many products there are to select from.
-int count_terms(int inputs, int degree);
+int count_terms(int inputs, int stratum);
 
 }  // namespace lipofill::forecast

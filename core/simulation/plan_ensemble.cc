@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -50,8 +51,12 @@ absl::Status make_ground(const model::FaceModel& model, const plan::SimulationSp
   ground.stepper = *std::move(stepper);
   ground.rest = ground.stepper->rest_state();
   if (const absl::Status open = ground.stepper->open_to_initial_thickness(ground.rest); !open.ok()) return open;
+  // When a run of the plan would end does not matter to a shape at rest.
+  plan::SimulationSpec at_rest = spec;
+  at_rest.settle_skin_speed = std::max(at_rest.settle_skin_speed, std::numeric_limits<double>::min());
+  at_rest.end = std::numeric_limits<double>::infinity();
   const auto hindrance =
-      DirectShape::find_hindrance(model, ground.films, spec, schedule, ground.rest, *ground.stepper, false);
+      DirectShape::find_hindrance(model, ground.films, at_rest, schedule, ground.rest, *ground.stepper, false);
   if (hindrance) {
     return absl::FailedPreconditionError(absl::StrCat(
         "the settled shape of this plan cannot be found at once, which a forecast needs: ", hindrance->text()));
@@ -139,6 +144,7 @@ absl::Status PlanEnsemble::Worker::set_up(const std::shared_ptr<const model::Fac
                                           const plan::SimulationSpec& spec, const VectorXd& kept) {
   model_ = model;
   spec_ = spec;
+  spec_.goal = plan::TimeGoal::kSettledShape;
   for (Index time = 0; time < kept.size(); ++time) {
     plan::InjectionSchedule schedule;
     Ground& made = *times_.emplace_back(std::make_unique<Ground>());

@@ -12,6 +12,8 @@ const std::map<std::string, MethodRule>& rules() {
       {"/grpc.health.v1.Health/Check", kOpen},
       {"/grpc.health.v1.Health/Watch", kOpen},
       {"/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", kOpen},
+      {"/lipofill.v1.ForecastService/EstimateRetention", {Effect::kNone, Role::kViewer}},
+      {"/lipofill.v1.ForecastService/MakeForecast", {Effect::kBegins, Role::kPlanner}},
       {"/lipofill.v1.FrameService/AcknowledgeFrame", {Effect::kSteers, Role::kViewer, false, true}},
       {"/lipofill.v1.FrameService/Watch", {Effect::kBegins, Role::kViewer}},
       {"/lipofill.v1.OperationService/CancelOperation", {Effect::kSteers, Role::kPlanner}},

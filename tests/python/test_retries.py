@@ -6,6 +6,7 @@ import lipofill
 from lipofill.errors import LipofillError, UnavailableError
 from lipofill.retries import Attempts, is_safe_to_repeat, with_request_id
 from lipofill.v1 import (
+    forecast_service_pb2,
     frame_service_pb2,
     operation_service_pb2,
     patient_service_pb2,
@@ -14,6 +15,7 @@ from lipofill.v1 import (
 )
 
 FILES = (
+    forecast_service_pb2,
     frame_service_pb2,
     operation_service_pb2,
     patient_service_pb2,

@@ -15,6 +15,7 @@ from lipofill.retries import Attempts, RetryPolicy, is_safe_to_repeat, with_requ
 from lipofill.rpc_types import ResponseStream, UnaryUnary
 from lipofill.topologies import Topologies
 from lipofill.v1 import (
+    forecast_service_pb2_grpc,
     frame_service_pb2_grpc,
     operation_service_pb2_grpc,
     patient_service_pb2_grpc,
@@ -63,6 +64,7 @@ class Channel:
         self._credentials = credentials or Credentials.from_environment()
         self._grpc = self._credentials.open_channel(self.server, _channel_options(self.server))
         self.patient_stub = patient_service_pb2_grpc.PatientServiceStub(self._grpc)
+        self.forecast_stub = forecast_service_pb2_grpc.ForecastServiceStub(self._grpc)
         self.planning_stub = planning_service_pb2_grpc.PlanningServiceStub(self._grpc)
         self.simulation_stub = simulation_service_pb2_grpc.SimulationServiceStub(self._grpc)
         self.frame_stub = frame_service_pb2_grpc.FrameServiceStub(self._grpc)

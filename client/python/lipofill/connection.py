@@ -6,6 +6,7 @@ from typing import Optional
 
 from lipofill.channel import DEFAULT_TIMEOUT_S, Channel
 from lipofill.credentials import Credentials
+from lipofill.forecasts import Forecasts
 from lipofill.models import Models
 from lipofill.operations import Operations
 from lipofill.patients import Patients
@@ -41,9 +42,9 @@ class Connection(Channel):
 
     Attributes
     ----------
-    patients, scans, models, targets, proposals, simulations, operations
+    patients, scans, models, targets, proposals, forecasts, simulations, operations
         What the daemon holds.
-    patient_stub, simulation_stub, frame_stub, operation_stub, planning_stub
+    patient_stub, simulation_stub, frame_stub, operation_stub, planning_stub, forecast_stub
         The generated stubs, for ``call``.
     """
 
@@ -62,6 +63,7 @@ class Connection(Channel):
         self.models = Models(self, self.operations)
         self.targets = Targets(self, self.operations)
         self.proposals = Proposals(self, self.operations)
+        self.forecasts = Forecasts(self, self.operations)
         self.simulations = Simulations(self)
 
     def run(

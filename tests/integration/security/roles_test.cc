@@ -16,7 +16,8 @@ const std::map<std::string, std::string>& expected_roles() {
     const auto add = [&all](const char* role, std::initializer_list<const char*> methods) {
       for (const char* method : methods) all[full_name(method)] = role;
     };
-    add("viewer", {"FrameService/AcknowledgeFrame",
+    add("viewer", {"ForecastService/EstimateRetention",
+                   "FrameService/AcknowledgeFrame",
                    "FrameService/Watch",
                    "OperationService/GetOperation",
                    "OperationService/ListOperations",
@@ -41,25 +42,16 @@ const std::map<std::string, std::string>& expected_roles() {
                    "SimulationService/GetSimulation",
                    "SimulationService/ListCheckpoints",
                    "SimulationService/ListSimulations"});
-    add("planner", {"OperationService/CancelOperation",
-                    "PatientService/BuildModel",
-                    "PatientService/CreatePatient",
-                    "PatientService/CreateScan",
-                    "PatientService/DeleteModel",
-                    "PatientService/DeleteScan",
-                    "PatientService/UpdatePatient",
-                    "PatientService/UploadScan",
-                    "PlanningService/MakeTarget",
-                    "PlanningService/ProposePlan",
-                    "SimulationService/CreateCheckpoint",
-                    "SimulationService/CreateSimulation",
-                    "SimulationService/DeleteCheckpoint",
-                    "SimulationService/DeleteSimulation",
-                    "SimulationService/Inject",
-                    "SimulationService/PauseSimulation",
-                    "SimulationService/RestoreSimulation",
-                    "SimulationService/ResumeSimulation",
-                    "SimulationService/StartSimulation",
+    add("planner", {"ForecastService/MakeForecast",       "OperationService/CancelOperation",
+                    "PatientService/BuildModel",          "PatientService/CreatePatient",
+                    "PatientService/CreateScan",          "PatientService/DeleteModel",
+                    "PatientService/DeleteScan",          "PatientService/UpdatePatient",
+                    "PatientService/UploadScan",          "PlanningService/MakeTarget",
+                    "PlanningService/ProposePlan",        "SimulationService/CreateCheckpoint",
+                    "SimulationService/CreateSimulation", "SimulationService/DeleteCheckpoint",
+                    "SimulationService/DeleteSimulation", "SimulationService/Inject",
+                    "SimulationService/PauseSimulation",  "SimulationService/RestoreSimulation",
+                    "SimulationService/ResumeSimulation", "SimulationService/StartSimulation",
                     "SimulationService/StopSimulation"});
     add("admin", {"PatientService/DeletePatient"});
     return all;

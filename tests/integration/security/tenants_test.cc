@@ -58,6 +58,8 @@ std::vector<Row> rows_about(const Possessions& theirs) {
       {"PlanningService/ProposePlan", R"({"spec":{"plan":{"model":")" + theirs.model + "\"}}}"},
       {"PlanningService/PlanDelivery", R"({"plan":{"model":")" + theirs.model + "\"}}"},
       {"PlanningService/ArrangeFace", R"({"parts":[{"name":"a","plan":{"model":")" + theirs.model + "\"}}]}"},
+      {"ForecastService/MakeForecast", below(theirs.patient, R"(,"spec":{})")},
+      {"ForecastService/MakeForecast", R"({"spec":{"plan":{"model":")" + theirs.model + "\"}}}"},
       {"SimulationService/CreateSimulation", R"({"spec":{"model":")" + theirs.model + "\"}}"},
       {"SimulationService/CheckPlan", R"({"spec":{"model":")" + theirs.model + "\"}}"},
       {"SimulationService/FindShape", R"({"spec":{"model":")" + theirs.model + "\"}}"},

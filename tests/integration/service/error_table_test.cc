@@ -96,6 +96,7 @@ std::vector<Row> patient_rows() {
 std::vector<Row> simulation_rows() {
   const std::string simulations = "SimulationService/";
   const std::string planning = "PlanningService/";
+  const std::string forecasts = "ForecastService/";
   return {
       invalid(simulations + "CreateSimulation", R"({"simulationId":"X"})", {"simulation_id", "spec"}),
       absent(simulations + "CreateSimulation",
@@ -103,6 +104,9 @@ std::vector<Row> simulation_rows() {
                  "zones":[{"name":"z","box":{"xiMin":0,"xiMax":1,"etaMin":0,"etaMax":1}}]}]},"validateOnly":true})"),
       invalid(planning + "ProposePlan", R"({"parent":"patients/anna"})", {"spec"}),
       absent(planning + "ProposePlan", R"({"parent":"patients/berta","spec":{}})"),
+      invalid(forecasts + "MakeForecast", R"({"parent":"patients/anna"})", {"spec"}),
+      absent(forecasts + "MakeForecast", R"({"parent":"patients/berta","spec":{}})"),
+      invalid(forecasts + "EstimateRetention", R"({"wantedMl":-1})", {"wanted_ml"}),
       invalid(planning + "PlanDelivery", "{}", {"plan"}),
       absent(planning + "PlanDelivery", R"({"plan":{"model":"patients/anna/models/none"}})"),
       invalid(planning + "ArrangeFace", "{}", {"parts"}),

@@ -102,6 +102,15 @@ TEST(PlanEnsemble, StopsWhenItIsToldTo) {
   EXPECT_EQ(asked, 2);
 }
 
+TEST(PlanEnsemble, TakesAPlanWhoseRunWouldEndEarly) {
+  plan::SimulationSpec plan = make_small_plan();
+  plan.settle_skin_speed = 0.0;
+  plan.end = 0.5;
+  const auto ensemble = PlanEnsemble::create(make_small_model(), plan, kKept, 1);
+  ASSERT_TRUE(ensemble.ok()) << ensemble.status();
+  EXPECT_EQ((*ensemble)->nominal()[0].skin, make_ensemble()->nominal()[0].skin);
+}
+
 TEST(PlanEnsemble, RefusesAPlanThatHasToBeStepped) {
   plan::SimulationSpec plan = make_small_plan();
   plan.fat_yield_stress = 20.0;

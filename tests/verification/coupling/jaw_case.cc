@@ -16,10 +16,11 @@ JawPlan load_jaw_plan() {
   return load_sample_plan("jaw_angle.json");
 }
 
-JawPlan load_sample_plan(const std::string& file) {
+JawPlan load_sample_plan(const std::string& file, const std::filesystem::path& scan) {
   auto plan = client::load_plan(LIPOFILL_EXAMPLES "/plans/" + file);
   EXPECT_TRUE(plan.ok()) << plan.status();
   if (!plan.ok()) return {};
+  if (!scan.empty()) plan->scan_file = scan.string();
   EXPECT_TRUE(client::load_plan_landmarks(&*plan).ok());
   client::take_region_from_zones(&plan->plan);
   // What the daemon would have put there: the scan and the model are passed on as they are.
@@ -30,10 +31,12 @@ JawPlan load_sample_plan(const std::string& file) {
     std::ifstream scan_file(*plan->scan_file, std::ios::binary);
     std::stringstream bytes;
     bytes << scan_file.rdbuf();
-    auto scan = geometry::read_surface(bytes.str(), geometry::SurfaceFormat::kObj, 1e-3);
-    EXPECT_TRUE(scan.ok()) << scan.status();
-    if (!scan.ok()) return {};
-    face = *std::move(scan);
+    const bool is_ply = std::filesystem::path(*plan->scan_file).extension() == ".ply";
+    const auto format = is_ply ? geometry::SurfaceFormat::kPly : geometry::SurfaceFormat::kObj;
+    auto read = geometry::read_surface(bytes.str(), format, 1e-3);
+    EXPECT_TRUE(read.ok()) << read.status();
+    if (!read.ok()) return {};
+    face = *std::move(read);
   }
   auto model_spec = server::to_face_model_spec(plan->plan.model());
   auto spec = server::to_simulation_spec(plan->plan.simulation());

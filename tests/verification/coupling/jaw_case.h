@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
@@ -18,7 +19,8 @@ struct JawPlan {
 /// From client/examples/plans/jaw_angle.json; not ok where that fails, and the test with it.
 JawPlan load_jaw_plan();
 /// The same of another sample plan, on that face or on a square.
-JawPlan load_sample_plan(const std::string& file);
+/// @param scan  the face of a plan that names none; OBJ or PLY in millimetres
+JawPlan load_sample_plan(const std::string& file, const std::filesystem::path& scan = {});
 
 struct JawCase {
   std::shared_ptr<const model::FaceModel> model;

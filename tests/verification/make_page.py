@@ -20,6 +20,8 @@ SECTIONS = {
     "solid": "Tissue alone",
     "fat": "Fat as it is",
     "anatomy": "Anatomy",
+    "planning": "Planning",
+    "forecast": "Forecasts",
     "conservation": "Conservation",
 }
 INTRODUCTION = """# Verification

@@ -65,8 +65,8 @@ absl::Status draw_deficit_sheet(const Connection& connection, const v1::TargetSp
                                 const std::filesystem::path& png) {
   const auto arrays = download_scan_mesh(connection, target.scan());
   if (!arrays.ok()) return arrays.status();
-  const Array distance = distance_field(deficit);
-  const auto views = mesh_views(*arrays, std::vector<Array>{distance});
+  const std::vector<Array> fields = {distance_field(deficit)};
+  const auto views = mesh_views(*arrays, fields);  // which point into both
   if (!views.ok()) return views.status();
   if (views->size() != 1) return absl::DataLossError("the daemon sent another number of meshes than one");
   const TemporaryFolder folder;

@@ -17,9 +17,9 @@ namespace {
 constexpr std::chrono::seconds kSlow{1};
 /// Memory is given back to the system when half of so many calls have ended.
 constexpr size_t kManyCalls = 512;
-/// So many sweeps give memory back after much was let go of: the transport frees what a call sent a
-/// moment after the call is removed.
-constexpr int kSweepsAfter = 2;
+/// So many sweeps give memory back after much was let go of: what a call sent, or asked and was
+/// refused, is freed some time after the call is removed, on a busy machine seconds after.
+constexpr int kSweepsAfter = 5;
 
 void end_call(grpc_call* call, const absl::Status& status) {
   ::grpc_call_cancel_with_status(call, static_cast<grpc_status_code>(status.code()),
@@ -67,7 +67,8 @@ void LiveCalls::remove(uint64_t number) {
   const std::lock_guard lock(mutex_);
   Live* live = find(number);
   if (live == nullptr) return;
-  if (live->sent + live->kept > kMuch || (live->shows && live->waits)) sweeps_to_trim_ = kSweepsAfter;
+  const bool held_much = live->sent + live->kept > kMuch || live->request > 16 * kMuch || live->is_refused;
+  if (held_much || (live->shows && live->waits)) sweeps_to_trim_ = kSweepsAfter;
   end_sent(*live);
   messages_.give_back(live->caller, live->request);
   streams_.give_back(live->caller, live->kept);
@@ -101,7 +102,7 @@ absl::Status LiveCalls::keep_request(uint64_t number, uint64_t bytes) {
   messages_.give_back(live->caller, std::exchange(live->request, 0));
   const absl::Status room = messages_.take(live->caller, bytes);
   if (room.ok()) live->request = bytes;
-  if (!room.ok()) sweeps_to_trim_ = kSweepsAfter;
+  live->is_refused = live->is_refused || !room.ok();
   return room;
 }
 
@@ -131,7 +132,7 @@ absl::Status LiveCalls::begin_answer(uint64_t number, uint64_t bytes) {
     live->kept -= of_kept;
     return room;
   }
-  sweeps_to_trim_ = kSweepsAfter;
+  live->is_refused = true;
   grpc_call* call = live->call;
   lock.unlock();
   end_call(call, room);  // its watcher, who asks, holds it

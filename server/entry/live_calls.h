@@ -76,6 +76,7 @@ class LiveCalls {
     uint64_t kept = 0;  ///< of answers that have yet to be sent
     uint64_t sent = 0;  ///< of the answer that waits to be read
     bool waits = false;
+    bool is_refused = false;  ///< for what it asked or was to be sent
     Clock::time_point since;  ///< it waits
   };
   using Ended = std::vector<std::pair<grpc_call*, absl::Status>>;

@@ -20,9 +20,9 @@ constexpr char kDistance[] = "distance_mm";
 constexpr int kTitleSize = 36;
 constexpr int kHeadingSize = 28;
 constexpr int kTextSize = 22;
-constexpr double kPanel = 0.35;
-constexpr double kBar = 0.71;       // where the scale of the distance begins
-constexpr double kFigures = 0.785;  // and the column of figures
+constexpr double kPanel = 0.335;
+constexpr double kBar = 0.68;       // where the scale of the distance begins
+constexpr double kFigures = 0.755;  // and the column of figures
 constexpr double kFiguresRight = 0.985;
 constexpr double kTop = 0.86;
 constexpr double kLine = 0.04;
@@ -31,6 +31,7 @@ constexpr size_t kMostRemarks = 3;
 void add_figures(const PictureRequest& request, Overlay& overlay) {
   double y = kTop;
   for (const auto& [what, value] : request.figures) {
+    if (value.empty() && y < kTop) y -= 0.6 * kLine;
     overlay.add_text(what, value.empty() ? kHeadingSize : kTextSize, kFigures, y);
     overlay.add_text(value, kTextSize, kFiguresRight, y, Align::kRight);
     y -= value.empty() ? 1.3 * kLine : kLine;

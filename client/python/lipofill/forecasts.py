@@ -47,7 +47,7 @@ class Forecasts:
         request = with_request_id(pb.MakeForecastRequest(parent=patient, spec=spec, validate_only=True))
         forecast = pb.Forecast()
         self._channel.call(self._stub.MakeForecast, request).response.Unpack(forecast)
-        return forecast.inputs
+        return list(forecast.inputs)
 
     def retention(
         self,

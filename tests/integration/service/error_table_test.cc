@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "lipofill/v1/forecast_service.pb.h"
 #include "lipofill/v1/planning_service.pb.h"
 #include "tests/integration/service/run_fixture.h"
 
@@ -181,7 +182,8 @@ std::vector<Row> all_rows() {
 }
 
 const google::protobuf::MethodDescriptor* find_method(const std::string& method) {
-  v1::MakeTargetRequest::descriptor();  // no stub here makes the linker take the service's file
+  v1::MakeTargetRequest::descriptor();  // no stub here makes the linker take the services' files
+  v1::MakeForecastRequest::descriptor();
   std::string name = "lipofill.v1." + method;
   name[name.find('/')] = '.';
   return google::protobuf::DescriptorPool::generated_pool()->FindMethodByName(name);

@@ -35,7 +35,8 @@ TEST(PlanParts, CountTheVerticesOfBoth) {
   EXPECT_EQ(count_shared_vertices(make_part({}, {1, 4, 7}), make_part({}, {0, 4, 7, 9})), 2);
 }
 
-// Zones of a plate of 48 mm that end at 0.45 and begin at 0.55 of its width: cells are 4 mm wide.
+// Zones of a plate of 48 mm that end at 0.45 and begin at 0.55 of its width, 4.8 mm apart: cells
+// are 4 mm wide, and the outlines cut them.
 TEST(PlanParts, ArePlacedOnTheSkin) {
   const auto model = make_square();
   plan::SimulationSpec left = make_square_plan(1e-6, 1e-6), right = left;
@@ -47,8 +48,9 @@ TEST(PlanParts, ArePlacedOnTheSkin) {
   const auto other = place_part(*model, right);
   ASSERT_TRUE(one.ok() && other.ok()) << one.status() << other.status();
   EXPECT_NEAR(one->fat.row(2).cwiseAbs().maxCoeff(), 0.0, 1e-12) << "the skin lies at z = 0";
-  EXPECT_GT(find_distance(*one, *other), 4.8e-3 - 1e-9);
-  EXPECT_LT(find_distance(*one, *other), 4.8e-3 + 2 * 4e-3);
+  EXPECT_NEAR(find_distance(*one, *other), 4.8e-3, 4e-3);
+  EXPECT_GE(one->fat.row(0).minCoeff(), 0.1 * 48e-3 - 2e-3);
+  EXPECT_LE(other->fat.row(0).maxCoeff(), 0.9 * 48e-3 + 2e-3);
 }
 
 }  // namespace

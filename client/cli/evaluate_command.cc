@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/application.h"
+#include "client/cli/choice.h"
 #include "client/cli/describe.h"
 #include "client/cli/private_daemon.h"
 #include "client/cli/result_files.h"
@@ -119,7 +120,7 @@ void add_evaluate_command(CLI::App& root, Application& application) {
                       "\"target_to_simulated.max_mm\", \"volume_simulated.deficit_ml\", "
                       "\"zones.ZONE.simulated.skin_to_target.p95_mm\"; may be repeated");
   command->add_option("--unit", options->unit, "unit of the target's numbers: mm (default), cm or m")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+      ->transform(choice_of(kUnitNames));
 }
 
 }  // namespace lipofill::client

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "client/cli/application.h"
+#include "client/cli/choice.h"
 #include "client/cli/forecast_run.h"
 #include "client/cpp/json_message.h"
 #include "lipofill/v1/forecast_service.grpc.pb.h"
@@ -61,7 +62,7 @@ void add_retention_options(CLI::App& command, Message message) {
   add_field<v1::Retention::Preset>(
       command, "--retention", "pooled (default), acquired_atrophy, mixed_indications, cotton_pad or centrifuge",
       [message](v1::Retention::Preset preset) { message()->mutable_retention()->set_preset(preset); })
-      ->transform(CLI::CheckedTransformer(kPresets));
+      ->transform(choice_of(kPresets));
   add_field<double>(command, "--retention-sd", "standard deviation of the share after 12 months, patient to patient",
                     [message](double value) { message()->mutable_retention()->set_standard_deviation(value); });
   add_field<std::vector<double>>(command, "--month", "a month to tell of; may be repeated (default 1, 3, 6, 12)",

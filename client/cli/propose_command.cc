@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "client/cli/application.h"
+#include "client/cli/choice.h"
 #include "client/cli/propose_run.h"
 #include "client/cli/units.h"
 
@@ -75,7 +76,7 @@ void add_propose_command(CLI::App& root, Application& application) {
   command->add_option("--out", options->out, "folder of results; made when missing")->required();
   add_ground_options(*command, *options, "start a private lipofilld for this and stop it after");
   command->add_option("--target-unit", options->target_unit, "unit of the target's numbers: mm (default), cm or m")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+      ->transform(choice_of(kUnitNames));
   command->add_flag("--keep", options->keep, "keep patient, scans and model on the daemon");
   command->add_flag("--quiet", options->quiet, "no progress, no summary");
   add_bounds(*command, options);

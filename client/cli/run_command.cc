@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "client/cli/application.h"
+#include "client/cli/choice.h"
 #include "client/cli/face_run.h"
 #include "client/cli/run.h"
 #include "client/cli/units.h"
@@ -22,7 +23,7 @@ constexpr char kRunExamples[] =
     "  lipofill run jaw_angle.json --out result --spawn --preview\n"
     "  lipofill run jaw_angle.json --out result --spawn --scan face.obj --landmarks face.json --unit mm\n"
     "  lipofill run jaw_angle.json --out result --spawn --interval-ms 500 --evaluate goal.obj\n"
-    "  lipofill run both_cheeks.json --out result --spawn --fast\n"
+    "  lipofill run several_parts.json --out result --spawn --fast\n"
     "  lipofill run square.json --out result --server 10.0.0.5:50061 --json --quiet\n";
 
 }  // namespace
@@ -51,7 +52,7 @@ void add_run_command(CLI::App& root, Application& application) {
   command->add_option("--evaluate", options->evaluate,
                       "measure the result against this surface, as lipofill evaluate does");
   command->add_option("--target-unit", options->target_unit, "unit of that surface: mm (default), cm or m")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+      ->transform(choice_of(kUnitNames));
   command->add_flag(
       "--keep,!--discard", options->keep,
       "keep patient, model and simulation where they ran (the default), or delete them once the files are written");

@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
+#include "client/cli/choice.h"
 #include "client/cli/describe.h"
 #include "client/cli/listing.h"
 #include "client/cli/units.h"
@@ -28,7 +29,7 @@ void add_ground_options(CLI::App& command, GroundOptions& options, const std::st
   command.add_option("--landmarks", options.landmarks,
                      "landmarks in place of the plan's; FILE.json, FILE.json#object, .mrk.json, .fcsv, .pp or .csv");
   command.add_option("--unit", options.unit, "unit of the scan, and of what --bone names: mm, cm or m")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+      ->transform(choice_of(kUnitNames));
 }
 
 absl::Status RunGround::read_plan() {

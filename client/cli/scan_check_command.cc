@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_cat.h"
+#include "client/cli/choice.h"
 #include "client/cli/describe.h"
 #include "client/cli/picture.h"
 #include "client/cli/private_daemon.h"
@@ -92,7 +93,7 @@ void add_scan_check_command(CLI::App& scan, Application& application) {
                                         [&application, options] { return check(application, *options); });
   command->add_option("file", options->file, ".obj, .ply or .stl")->required();
   command->add_option("--unit", options->unit, "unit of the file's numbers: mm (default), cm or m")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+      ->transform(choice_of(kUnitNames));
   command->add_option("--picture", options->picture, "draw the surface into this file")->type_name("FILE.png");
 }
 

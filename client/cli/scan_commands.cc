@@ -3,6 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/application.h"
+#include "client/cli/choice.h"
 #include "client/cli/describe.h"
 #include "client/cli/listing.h"
 #include "client/cli/progress_line.h"
@@ -74,7 +75,7 @@ void add_scan_commands(CLI::App& root, Application& application) {
   command->add_option("patient", options->patient, "patients/ID, or the ID alone")->required();
   command->add_option("file", options->file, ".obj, .ply or .stl")->required();
   command->add_option("--unit", options->unit, "unit of the file's numbers: mm (default), cm or m")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+      ->transform(choice_of(kUnitNames));
   add_command(*group, application, "get", "Show a scan", "  lipofill scan get patients/case-7/scans/abc\n",
               [&application, options] { return get(application, *options); })
       ->add_option("scan", options->name, "patients/ID/scans/ID")

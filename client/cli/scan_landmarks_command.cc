@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/choice.h"
 #include "client/cli/scan_check.h"
 #include "client/cli/units.h"
 #include "client/cpp/landmarks_file.h"
@@ -64,7 +65,7 @@ void add_scan_landmarks_command(CLI::App& scan, Application& application) {
   command->add_option("file", options->file, "the landmarks; FILE.json#OBJECT names an object in a .json")->required();
   command
       ->add_option("--unit", options->unit, "unit of the numbers, where the file does not tell: mm (default), cm or m")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+      ->transform(choice_of(kUnitNames));
   command->add_option("--out", options->out, "write them, in mm and LPS, as .json, .mrk.json, .fcsv, .pp or .csv");
 }
 

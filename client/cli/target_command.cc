@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/application.h"
+#include "client/cli/choice.h"
 #include "client/cli/deficit_sheet.h"
 #include "client/cli/describe.h"
 #include "client/cli/listing.h"
@@ -207,9 +208,9 @@ void add_target_command(CLI::App& root, Application& application) {
   command->add_option("--sheet", options->sheet, "draw what is missing on the face, with its figures by region")
       ->type_name("FILE.png");
   command->add_option("--unit", options->unit, "unit of the face's numbers: mm (default), cm or m")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+      ->transform(choice_of(kUnitNames));
   command->add_option("--surface-unit", options->surface_unit, "unit of the surface's numbers")
-      ->transform(CLI::CheckedTransformer(kUnitNames));
+      ->transform(choice_of(kUnitNames));
 }
 
 }  // namespace lipofill::client

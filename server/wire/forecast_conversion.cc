@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "absl/strings/str_cat.h"
@@ -228,7 +229,8 @@ absl::StatusOr<forecast::ForecastRequest> to_forecast_request(const v1::Forecast
   auto plan = to_simulation_spec(spec.plan());
   if (spec.has_plan()) violations.absorb("plan", plan.status());
   if (plan.ok()) request.plan = *std::move(plan);
-  if (spec.has_members()) request.members = static_cast<int>(std::min(spec.members(), 1'000'000u));
+  if (spec.has_members())
+    request.members = static_cast<int>(std::min<uint32_t>(spec.members(), std::numeric_limits<int>::max()));
   request.inputs = read_inputs(spec, violations);
   request.only_named_inputs = spec.only_named_inputs();
   request.retention = to_retention_spec(spec.retention());

@@ -111,6 +111,9 @@ absl::StatusOr<v1::RetentionEstimate> estimate_retention(const v1::EstimateReten
   violations.absorb("retention", prior.status());
   const std::vector<double> months = months_of(request, violations);
   if (request.has_wanted_ml()) violations.check_range("wanted_ml", request.wanted_ml(), 0.0, kMostMl, "mL");
+  if (request.has_injected_ml() && !request.has_follow_up()) {
+    violations.check_range("injected_ml", request.injected_ml(), 0.0, kMostMl, "mL");
+  }
   if (!prior.ok()) return violations.to_status();
   const forecast::Retention retention = request.has_follow_up() ? update(*prior, request, violations) : *prior;
   if (!violations.empty()) return violations.to_status();

@@ -152,6 +152,9 @@ TEST_F(ForecastTest, EstimatesRetention) {
   EXPECT_LT(found.months(3).p95() - found.months(3).p05(), 0.5 * (prior.months(3).p95() - prior.months(3).p05()));
   request.mutable_follow_up()->set_kept_ml(20.0);
   EXPECT_THAT(violations_of(estimate(request, found)), UnorderedElementsAre(Key("follow_up")));
+  request.clear_follow_up();
+  request.set_injected_ml(-1.0);
+  EXPECT_THAT(violations_of(estimate(request, found)), UnorderedElementsAre(Key("injected_ml")));
 }
 
 }  // namespace

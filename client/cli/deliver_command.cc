@@ -24,17 +24,13 @@ void add_deliver_command(CLI::App& root, Application& application) {
   const auto options = std::make_shared<DeliverOptions>();
   CLI::App* command = add_command(root, application, "deliver", kDescription, kExamples,
                                   [&application, options] { return DeliverRun(application, *options).carry_out(); });
-  command->add_option("plan", options->plan, "PLAN.json")->required();
-  command->add_option("--out", options->out, "folder of results; made when missing")->required();
-  add_ground_options(*command, *options, "start a private lipofilld for this and stop it after");
+  add_plan_work_options(*command, *options);
   command->add_option("--max-pass-ml", options->max_pass_ml,
                       "a pass lays at most this (default 0.1, which is the most)");
   command->add_option("--tunnel-spacing-mm", options->tunnel_spacing_mm,
                       "between the ends of neighbouring tunnels, 2 to 20 (default 5)");
   command->add_flag("--compare", options->compare,
                     "find the settled shape of the plan and of the fat as it is laid, and say how far they differ");
-  command->add_flag("--keep", options->keep, "keep patient, scans and model on the daemon");
-  command->add_flag("--quiet", options->quiet, "no progress, no list");
 }
 
 }  // namespace lipofill::client

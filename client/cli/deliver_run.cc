@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 #include <string>
 #include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
 #include "client/cli/changed_plan.h"
-#include "client/cpp/errors.h"
 #include "client/cpp/json_file.h"
 #include "client/cpp/json_message.h"
 #include "lipofill/v1/planning_service.grpc.pb.h"
@@ -73,64 +72,12 @@ std::string describe(const v1::Delivery& delivery) {
   return text;
 }
 
-/// Fields of the plan's file as they are called there, and options.
-absl::Status name_options(const absl::Status& status) {
-  std::vector<FieldViolation> violations = error_details_of(status).violations;
-  if (violations.empty()) return status;
-  for (FieldViolation& violation : violations) {
-    if (absl::StartsWith(violation.field, "plan.")) {
-      violation.field = absl::StrCat("simulation.", absl::StripPrefix(violation.field, "plan."));
-    } else if (violation.field == "max_pass_ml") {
-      violation.field = "--max-pass-ml";
-    } else if (violation.field == "tunnel_spacing_mm") {
-      violation.field = "--tunnel-spacing-mm";
-    }
-  }
-  return invalid_fields(std::string(status.message()), violations);
-}
-
 }  // namespace
 
 DeliverRun::DeliverRun(Application& application, DeliverOptions options)
-    : application_(application),
-      options_(std::move(options)),
-      progress_(options_.quiet),
-      ground_(application, options_, progress_) {}
+    : PlanWork(application, options), options_(std::move(options)) {}
 
-absl::StatusOr<ExitCode> DeliverRun::carry_out() {
-  absl::Status status;
-  for (const auto step : {&DeliverRun::read_plan, &DeliverRun::prepare_ground, &DeliverRun::list_passes}) {
-    status = (this->*step)();
-    if (!status.ok()) break;
-  }
-  progress_.finish();
-  if (status.ok()) status = write_results();
-  if (!status.ok() || !options_.keep) {
-    ground_.delete_patient();
-    ground_.end_daemon();
-  }
-  if (!status.ok()) return name_options(status);
-  print();
-  return ExitCode::kOk;
-}
-
-absl::Status DeliverRun::read_plan() {
-  std::error_code error;
-  std::filesystem::create_directories(options_.out, error);
-  if (error)
-    return absl::InvalidArgumentError(absl::StrCat("cannot make the folder ", options_.out, ": ", error.message()));
-  return ground_.read_plan();
-}
-
-absl::Status DeliverRun::prepare_ground() {
-  for (const auto step :
-       {&RunGround::reach_daemon, &RunGround::prepare_patient, &RunGround::send_scan, &RunGround::build}) {
-    if (const absl::Status status = (ground_.*step)(); !status.ok()) return status;
-  }
-  return absl::OkStatus();
-}
-
-absl::Status DeliverRun::list_passes() {
+absl::Status DeliverRun::work() {
   v1::PlanDeliveryRequest request;
   *request.mutable_plan() = ground_.plan().plan.simulation();
   request.mutable_plan()->set_model(ground_.model().name());
@@ -153,13 +100,17 @@ absl::Status DeliverRun::write_results() const {
   return written;
 }
 
-void DeliverRun::print() const {
-  if (application_.json) {
-    std::cout << message_json(delivery_) << "\n" << std::flush;
-  } else if (!options_.quiet) {
-    std::cout << describe(delivery_) << "passes.csv, delivery.json and plan.json in " << options_.out << "\n"
-              << std::flush;
-  }
+std::string DeliverRun::json() const {
+  return message_json(delivery_);
+}
+
+std::string DeliverRun::text() const {
+  return absl::StrCat(describe(delivery_), "passes.csv, delivery.json and plan.json in ", options_.out, "\n");
+}
+
+std::string DeliverRun::option_of(const std::string& field) const {
+  if (absl::StartsWith(field, "plan.")) return absl::StrCat("simulation.", absl::StripPrefix(field, "plan."));
+  return absl::StrCat("--", absl::StrReplaceAll(field, {{"_", "-"}}));
 }
 
 }  // namespace lipofill::client

@@ -1,41 +1,32 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
-#include "client/cli/application.h"
-#include "client/cli/progress_line.h"
-#include "client/cli/run_ground.h"
+#include "client/cli/plan_work.h"
 #include "lipofill/v1/planning_service.pb.h"
 
 namespace lipofill::client {
 
-struct DeliverOptions : GroundOptions {
+struct DeliverOptions : PlanWorkOptions {
   std::optional<double> max_pass_ml;
   std::optional<double> tunnel_spacing_mm;
   bool compare = false;
-  bool keep = false;
-  bool quiet = false;
 };
 
-/// An injection list made on a daemon: each member function is one step, in their order in
-/// `carry_out`. Checked by tests/integration/cli/deliver_test.cc.
-class DeliverRun {
+/// An injection list made on a daemon.
+class DeliverRun : public PlanWork {
  public:
   DeliverRun(Application& application, DeliverOptions options);
 
-  absl::StatusOr<ExitCode> carry_out();
-
  private:
-  absl::Status read_plan();
-  absl::Status prepare_ground();
-  absl::Status list_passes();
-  absl::Status write_results() const;
-  void print() const;
+  absl::Status work() override;
+  absl::Status write_results() const override;
+  std::string json() const override;
+  std::string text() const override;
+  std::string option_of(const std::string& field) const override;
 
-  Application& application_;
   const DeliverOptions options_;
-  ProgressLine progress_;
-  RunGround ground_;
   v1::Delivery delivery_;
 };
 

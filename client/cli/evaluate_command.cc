@@ -5,8 +5,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/application.h"
-#include "client/cli/choice.h"
 #include "client/cli/describe.h"
+#include "client/cli/options.h"
 #include "client/cli/private_daemon.h"
 #include "client/cli/result_files.h"
 #include "client/cli/run_record.h"

@@ -97,12 +97,7 @@ absl::Status FaceRun::read_plan() {
     if (part.name().empty())
       return invalid_fields("a plan of several parts", {{"parts.name", "is missing; each part needs one"}});
   }
-  std::error_code error;
-  std::filesystem::create_directories(options_.out, error);
-  if (error) {
-    return absl::InvalidArgumentError(absl::StrCat("cannot make the folder ", options_.out, ": ", error.message()));
-  }
-  return absl::OkStatus();
+  return ground_.make_folder();
 }
 
 absl::Status FaceRun::prepare_ground() {

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "client/cli/application.h"
-#include "client/cli/choice.h"
 #include "client/cli/forecast_run.h"
+#include "client/cli/options.h"
 #include "client/cpp/json_message.h"
 #include "lipofill/v1/forecast_service.grpc.pb.h"
 
@@ -48,13 +48,6 @@ const std::map<std::string, v1::Retention::Preset> kPresets = {
     {"cotton_pad", v1::Retention::COTTON_PAD},
     {"centrifuge", v1::Retention::CENTRIFUGE},
 };
-
-/// An option that sets a field of a message where it is given.
-template <typename Value, typename Set>
-CLI::Option* add_field(CLI::App& command, const std::string& name, const std::string& help, Set set) {
-  return command.add_option_function<Value>(
-      name, [set](const Value& value) { set(value); }, help);
-}
 
 /// Options that both commands have. `message` gives the message with retention, months, follow_up.
 template <typename Message>
@@ -116,12 +109,8 @@ void add_forecast_commands(CLI::App& root, Application& application) {
   const auto options = std::make_shared<ForecastOptions>();
   CLI::App* command = add_command(root, application, "forecast", kDescription, kExamples,
                                   [&application, options] { return ForecastRun(application, *options).carry_out(); });
-  command->add_option("plan", options->plan, "PLAN.json")->required();
-  command->add_option("--out", options->out, "folder of results; made when missing")->required();
+  add_plan_work_options(*command, *options);
   command->add_option("--settings", options->settings, "a JSON file with a ForecastSpec: inputs and the rest");
-  add_ground_options(*command, *options, "start a private lipofilld for this and stop it after");
-  command->add_flag("--keep", options->keep, "keep patient, scan and model on the daemon");
-  command->add_flag("--quiet", options->quiet, "no progress, no summary");
   add_choices(*command, options);
   add_retention_command(root, application);
 }

@@ -1,11 +1,12 @@
 #include "client/cli/forecast_run.h"
 
 #include <filesystem>
-#include <iostream>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/strip.h"
 #include "client/cpp/json_file.h"
 #include "client/cpp/json_message.h"
 #include "client/cpp/model_build.h"
@@ -83,49 +84,17 @@ std::string describe(const v1::Forecast& forecast) {
 }
 
 ForecastRun::ForecastRun(Application& application, ForecastOptions options)
-    : application_(application),
-      options_(std::move(options)),
-      progress_(options_.quiet),
-      ground_(application, options_, progress_) {}
+    : PlanWork(application, options), options_(std::move(options)) {}
 
-absl::StatusOr<ExitCode> ForecastRun::carry_out() {
-  absl::Status status;
-  for (const auto step : {&ForecastRun::read_input, &ForecastRun::prepare_ground, &ForecastRun::make}) {
-    status = (this->*step)();
-    if (!status.ok()) break;
-  }
-  progress_.finish();
-  if (status.ok()) status = write_results();
-  if (!status.ok() || !options_.keep) {
-    ground_.delete_patient();
-    ground_.end_daemon();
-  }
-  if (!status.ok()) return status;
-  print();
-  return ExitCode::kOk;
-}
-
-absl::Status ForecastRun::read_input() {
-  std::error_code error;
-  std::filesystem::create_directories(options_.out, error);
-  if (error)
-    return absl::InvalidArgumentError(absl::StrCat("cannot make the folder ", options_.out, ": ", error.message()));
+absl::Status ForecastRun::check_input() {
   if (!options_.settings.empty()) {
     if (auto loaded = load_message(options_.settings, &spec_); !loaded.ok()) return loaded;
   }
   spec_.MergeFrom(options_.spec);
-  return ground_.read_plan();
-}
-
-absl::Status ForecastRun::prepare_ground() {
-  for (const auto step :
-       {&RunGround::reach_daemon, &RunGround::prepare_patient, &RunGround::send_scan, &RunGround::build}) {
-    if (const absl::Status status = (ground_.*step)(); !status.ok()) return status;
-  }
   return absl::OkStatus();
 }
 
-absl::Status ForecastRun::make() {
+absl::Status ForecastRun::work() {
   v1::MakeForecastRequest request;
   request.set_parent(ground_.patient());
   *request.mutable_spec() = spec_;
@@ -145,12 +114,18 @@ absl::Status ForecastRun::write_results() const {
   return write_text_file(std::filesystem::path(options_.out) / "forecast.json", message_json(forecast_));
 }
 
-void ForecastRun::print() const {
-  if (application_.json) {
-    std::cout << message_json(forecast_) << "\n" << std::flush;
-  } else if (!options_.quiet) {
-    std::cout << describe(forecast_) << "forecast.json in " << options_.out << "\n" << std::flush;
-  }
+std::string ForecastRun::json() const {
+  return message_json(forecast_);
+}
+
+std::string ForecastRun::text() const {
+  return absl::StrCat(describe(forecast_), "forecast.json in ", options_.out, "\n");
+}
+
+/// Options and a file of settings both fill the spec: its own names are those of the file.
+std::string ForecastRun::option_of(const std::string& field) const {
+  if (absl::StartsWith(field, "spec.plan.")) return absl::StrCat("simulation.", absl::StripPrefix(field, "spec.plan."));
+  return field == "spec.members" ? "--members" : field;
 }
 
 }  // namespace lipofill::client

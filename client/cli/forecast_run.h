@@ -2,39 +2,30 @@
 
 #include <string>
 
-#include "client/cli/application.h"
-#include "client/cli/progress_line.h"
-#include "client/cli/run_ground.h"
+#include "client/cli/plan_work.h"
 #include "lipofill/v1/forecast_service.pb.h"
 
 namespace lipofill::client {
 
-struct ForecastOptions : GroundOptions {
-  std::string settings;  ///< a file with a ForecastSpec, what options say comes on top
-  bool keep = false;
-  bool quiet = false;
+struct ForecastOptions : PlanWorkOptions {
+  std::string settings;   ///< a file with a ForecastSpec, what options say comes on top
   v1::ForecastSpec spec;  ///< what options say, without the plan
 };
 
-/// A forecast made on a daemon, from a plan file to a file of figures: each member function is one
-/// step, in their order in `carry_out`.
-class ForecastRun {
+/// A forecast made on a daemon, from a plan file to a file of figures.
+class ForecastRun : public PlanWork {
  public:
   ForecastRun(Application& application, ForecastOptions options);
 
-  absl::StatusOr<ExitCode> carry_out();
-
  private:
-  absl::Status read_input();
-  absl::Status prepare_ground();
-  absl::Status make();
-  absl::Status write_results() const;
-  void print() const;
+  absl::Status check_input() override;
+  absl::Status work() override;
+  absl::Status write_results() const override;
+  std::string json() const override;
+  std::string text() const override;
+  std::string option_of(const std::string& field) const override;
 
-  Application& application_;
   const ForecastOptions options_;
-  ProgressLine progress_;
-  RunGround ground_;
   v1::ForecastSpec spec_;
   v1::Forecast forecast_;
 };

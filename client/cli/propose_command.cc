@@ -1,7 +1,7 @@
 #include <memory>
 
 #include "client/cli/application.h"
-#include "client/cli/choice.h"
+#include "client/cli/options.h"
 #include "client/cli/propose_run.h"
 #include "client/cli/units.h"
 
@@ -21,13 +21,6 @@ constexpr char kExamples[] =
     "  lipofill propose cheek.json --target goal.obj --out proposed --spawn --zones --below subcutaneous\n"
     "  lipofill propose jaw_angle.json --target goal.obj --out proposed --spawn --band-pa 2500\n"
     "  lipofill run proposed/plan.json --out result --spawn --evaluate goal.obj\n";
-
-/// An option that sets a field of a message where it is given.
-template <typename Value, typename Set>
-CLI::Option* add_field(CLI::App& command, const std::string& name, const std::string& help, Set set) {
-  return command.add_option_function<Value>(
-      name, [set](const Value& value) { set(value); }, help);
-}
 
 void add_bounds(CLI::App& command, const std::shared_ptr<ProposeOptions>& options) {
   const auto bounds = [options] { return options->spec.mutable_bounds(); };
@@ -71,14 +64,10 @@ void add_propose_command(CLI::App& root, Application& application) {
   const auto options = std::make_shared<ProposeOptions>();
   CLI::App* command = add_command(root, application, "propose", kDescription, kExamples,
                                   [&application, options] { return ProposeRun(application, *options).carry_out(); });
-  command->add_option("plan", options->plan, "PLAN.json")->required();
+  add_plan_work_options(*command, *options);
   command->add_option("--target", options->target, ".obj, .ply or .stl, or patients/ID/scans/ID")->required();
-  command->add_option("--out", options->out, "folder of results; made when missing")->required();
-  add_ground_options(*command, *options, "start a private lipofilld for this and stop it after");
   command->add_option("--target-unit", options->target_unit, "unit of the target's numbers: mm (default), cm or m")
       ->transform(choice_of(kUnitNames));
-  command->add_flag("--keep", options->keep, "keep patient, scans and model on the daemon");
-  command->add_flag("--quiet", options->quiet, "no progress, no summary");
   add_bounds(*command, options);
   add_choices(*command, options);
 }

@@ -1,7 +1,6 @@
 #include "client/cli/propose_run.h"
 
 #include <filesystem>
-#include <iostream>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -23,47 +22,20 @@ bool is_on_daemon(const std::string& surface) {
 }  // namespace
 
 ProposeRun::ProposeRun(Application& application, ProposeOptions options)
-    : application_(application),
-      options_(std::move(options)),
-      progress_(options_.quiet),
-      ground_(application, options_, progress_) {}
+    : PlanWork(application, options), options_(std::move(options)) {}
 
-absl::StatusOr<ExitCode> ProposeRun::carry_out() {
-  absl::Status status;
-  for (const auto step :
-       {&ProposeRun::read_plan, &ProposeRun::prepare_ground, &ProposeRun::send_target, &ProposeRun::propose}) {
-    status = (this->*step)();
-    if (!status.ok()) break;
-  }
-  progress_.finish();
-  if (status.ok()) status = write_results();
-  if (!status.ok() || !options_.keep) {
-    ground_.delete_patient();
-    ground_.end_daemon();
-  }
-  if (!status.ok()) return name_options(status);
-  print();
-  return ExitCode::kOk;
-}
-
-absl::Status ProposeRun::read_plan() {
+/// Said before a model is built for it.
+absl::Status ProposeRun::check_input() {
   std::error_code error;
-  std::filesystem::create_directories(options_.out, error);
-  if (error)
-    return absl::InvalidArgumentError(absl::StrCat("cannot make the folder ", options_.out, ": ", error.message()));
-  // Said before a model is built for it.
-  if (!is_on_daemon(options_.target) && !std::filesystem::is_regular_file(options_.target, error)) {
-    return absl::InvalidArgumentError(absl::StrCat("--target: ", options_.target, " does not exist or is not a file"));
+  if (is_on_daemon(options_.target) || std::filesystem::is_regular_file(options_.target, error)) {
+    return absl::OkStatus();
   }
-  return ground_.read_plan();
+  return absl::InvalidArgumentError(absl::StrCat("--target: ", options_.target, " does not exist or is not a file"));
 }
 
-absl::Status ProposeRun::prepare_ground() {
-  for (const auto step :
-       {&RunGround::reach_daemon, &RunGround::prepare_patient, &RunGround::send_scan, &RunGround::build}) {
-    if (const absl::Status status = (ground_.*step)(); !status.ok()) return status;
-  }
-  return absl::OkStatus();
+absl::Status ProposeRun::work() {
+  const absl::Status sent = send_target();
+  return sent.ok() ? propose() : sent;
 }
 
 absl::Status ProposeRun::send_target() {
@@ -98,12 +70,16 @@ absl::Status ProposeRun::write_results() const {
   return write_text_file(folder / "proposal.json", message_json(proposal_));
 }
 
-void ProposeRun::print() const {
-  if (application_.json) {
-    std::cout << message_json(proposal_) << "\n" << std::flush;
-  } else if (!options_.quiet) {
-    std::cout << describe(proposal_) << "plan.json and proposal.json in " << options_.out << "\n" << std::flush;
-  }
+std::string ProposeRun::json() const {
+  return message_json(proposal_);
+}
+
+std::string ProposeRun::text() const {
+  return absl::StrCat(describe(proposal_), "plan.json and proposal.json in ", options_.out, "\n");
+}
+
+std::string ProposeRun::option_of(const std::string& field) const {
+  return proposal_option_of(field);
 }
 
 }  // namespace lipofill::client

@@ -1,32 +1,15 @@
 #include "client/cli/propose_words.h"
 
 #include <map>
-#include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
-#include "client/cpp/errors.h"
 
 namespace lipofill::client {
 namespace {
-
-/// The option behind a field of the request; the field itself where it comes out of the plan's
-/// file.
-std::string option_of(const std::string& field) {
-  static const std::map<std::string, std::string> kOthers = {{"spec.zones.below_layers", "--below"},
-                                                             {"spec.spread.pressure_band_pa", "--band-pa"},
-                                                             {"spec.target_scan", "--target"}};
-  if (const auto known = kOthers.find(field); known != kOthers.end()) return known->second;
-  if (absl::StartsWith(field, "spec.plan.")) return absl::StrCat("simulation.", absl::StripPrefix(field, "spec.plan."));
-  for (const char* prefix : {"spec.bounds.", "spec.zones.", "spec."}) {
-    if (!absl::StartsWith(field, prefix)) continue;
-    return absl::StrCat("--", absl::StrReplaceAll(absl::StripPrefix(field, prefix), {{"_", "-"}}));
-  }
-  return field;
-}
 
 /// What holds a volume, as people say it.
 std::string bound_words(const std::string& bound) {
@@ -47,11 +30,17 @@ void append_volume(const v1::ProposedVolume& volume, std::string& text) {
 
 }  // namespace
 
-absl::Status name_options(const absl::Status& status) {
-  std::vector<FieldViolation> violations = error_details_of(status).violations;
-  if (violations.empty()) return status;
-  for (FieldViolation& violation : violations) violation.field = option_of(violation.field);
-  return invalid_fields(std::string(status.message()), violations);
+std::string proposal_option_of(const std::string& field) {
+  static const std::map<std::string, std::string> kOthers = {{"spec.zones.below_layers", "--below"},
+                                                             {"spec.spread.pressure_band_pa", "--band-pa"},
+                                                             {"spec.target_scan", "--target"}};
+  if (const auto known = kOthers.find(field); known != kOthers.end()) return known->second;
+  if (absl::StartsWith(field, "spec.plan.")) return absl::StrCat("simulation.", absl::StripPrefix(field, "spec.plan."));
+  for (const char* prefix : {"spec.bounds.", "spec.zones.", "spec."}) {
+    if (!absl::StartsWith(field, prefix)) continue;
+    return absl::StrCat("--", absl::StrReplaceAll(absl::StripPrefix(field, prefix), {{"_", "-"}}));
+  }
+  return field;
 }
 
 std::string describe(const v1::Proposal& proposal) {

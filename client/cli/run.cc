@@ -62,10 +62,7 @@ absl::Status Run::read_plan() {
 }
 
 absl::Status Run::prepare_ground() {
-  for (const auto step :
-       {&RunGround::reach_daemon, &RunGround::prepare_patient, &RunGround::send_scan, &RunGround::build}) {
-    if (const absl::Status status = (ground_.*step)(); !status.ok()) return status;
-  }
+  if (const absl::Status status = ground_.prepare(); !status.ok()) return status;
   if (ground_.is_private()) {
     record_.data = RunGround::kPrivateData;
   } else {

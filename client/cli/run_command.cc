@@ -1,8 +1,8 @@
 #include <memory>
 
 #include "client/cli/application.h"
-#include "client/cli/choice.h"
 #include "client/cli/face_run.h"
+#include "client/cli/options.h"
 #include "client/cli/run.h"
 #include "client/cli/units.h"
 

@@ -6,9 +6,9 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
-#include "client/cli/choice.h"
 #include "client/cli/describe.h"
 #include "client/cli/listing.h"
+#include "client/cli/options.h"
 #include "client/cli/units.h"
 #include "client/cpp/errors.h"
 #include "client/cpp/landmarks_file.h"
@@ -30,6 +30,13 @@ void add_ground_options(CLI::App& command, GroundOptions& options, const std::st
                      "landmarks in place of the plan's; FILE.json, FILE.json#object, .mrk.json, .fcsv, .pp or .csv");
   command.add_option("--unit", options.unit, "unit of the scan, and of what --bone names: mm, cm or m")
       ->transform(choice_of(kUnitNames));
+}
+
+absl::Status RunGround::make_folder() const {
+  std::error_code error;
+  std::filesystem::create_directories(options_.out, error);
+  if (!error) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat("cannot make the folder ", options_.out, ": ", error.message()));
 }
 
 absl::Status RunGround::read_plan() {
@@ -106,6 +113,14 @@ absl::Status RunGround::send_scan() {
     const auto bone = send_surface(*plan_.bone_file, plan_.plan.bone().unit(), "bone");
     if (!bone.ok()) return bone.status();
     model_spec_.mutable_scan_region()->set_bone_scan(bone->name());
+  }
+  return absl::OkStatus();
+}
+
+absl::Status RunGround::prepare() {
+  for (const auto step :
+       {&RunGround::reach_daemon, &RunGround::prepare_patient, &RunGround::send_scan, &RunGround::build}) {
+    if (const absl::Status status = (this->*step)(); !status.ok()) return status;
   }
   return absl::OkStatus();
 }

@@ -38,11 +38,14 @@ class RunGround {
   RunGround(Application& application, GroundOptions options, ProgressLine& progress)
       : application_(application), options_(std::move(options)), progress_(progress) {}
 
+  absl::Status make_folder() const;
   absl::Status read_plan();
   absl::Status reach_daemon();
   absl::Status prepare_patient();
   absl::Status send_scan();
   absl::Status build();
+  /// The steps from reach_daemon() to build().
+  absl::Status prepare();
   /// Builds a model of the scan that was sent.
   /// @param part  for people, of what it is; empty: of the plan
   absl::StatusOr<v1::Model> build_for(v1::ModelSpec spec, const std::string& part);

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "absl/strings/str_cat.h"
-#include "client/cli/choice.h"
 #include "client/cli/describe.h"
+#include "client/cli/options.h"
 #include "client/cli/picture.h"
 #include "client/cli/private_daemon.h"
 #include "client/cli/process.h"

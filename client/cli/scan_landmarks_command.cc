@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "client/cli/choice.h"
+#include "client/cli/options.h"
 #include "client/cli/scan_check.h"
 #include "client/cli/units.h"
 #include "client/cpp/landmarks_file.h"

@@ -39,7 +39,7 @@ TEST_F(ForecastCliTest, TellsPeople) {
 TEST_F(ForecastCliTest, RefusesWithFigures) {
   const CommandResult many = run("lipofill forecast plan.json --out known --spawn --quiet --members 20000");
   EXPECT_EQ(many.exit_code, 2);
-  EXPECT_THAT(many.errors, HasSubstr("is 20000, must be in [50, 10000]"));
+  EXPECT_THAT(many.errors, HasSubstr("--members: is 20000, must be in [50, 10000]"));
   const CommandResult preset = run("lipofill forecast plan.json --out known --spawn --quiet --retention magic");
   EXPECT_EQ(preset.exit_code, 2);
   EXPECT_THAT(preset.errors, HasSubstr("magic"));

@@ -53,12 +53,7 @@ class ProposalTest : public RunTest {
     v1::Operation operation;
     const grpc::Status started = start(request, operation);
     EXPECT_TRUE(started.ok()) << started.error_message();
-    while (started.ok() && !operation.done()) {
-      v1::WaitOperationRequest wait;
-      wait.set_name(operation.name());
-      if (!call(*operations_, &v1::OperationService::Stub::WaitOperation, wait, operation).ok()) break;
-    }
-    return operation;
+    return started.ok() ? await(operation) : operation;
   }
   v1::Proposal propose(const v1::ProposePlanRequest& request) {
     const v1::Operation operation = finish(request);

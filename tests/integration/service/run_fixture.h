@@ -46,6 +46,15 @@ class RunTest : public ServiceTest {
   grpc::Status stop(const std::string& name, v1::Simulation* result = nullptr, const std::string& request_id = "") {
     return act<v1::StopSimulationRequest>(&v1::SimulationService::Stub::StopSimulation, name, result, request_id);
   }
+  /// Waits until an operation is done.
+  v1::Operation await(v1::Operation operation) {
+    while (!operation.done()) {
+      v1::WaitOperationRequest wait;
+      wait.set_name(operation.name());
+      if (!call(*operations_, &v1::OperationService::Stub::WaitOperation, wait, operation).ok()) break;
+    }
+    return operation;
+  }
   v1::GetSeriesResponse series(const std::string& name, uint64_t after = 0) {
     v1::GetSeriesRequest request;
     request.set_name(name);

@@ -123,44 +123,29 @@ absl::Status FaceRun::build_parts() {
   return absl::OkStatus();
 }
 
-/// Parts that touch become one, which may touch others in turn.
+/// Makes one of parts that touch, directly or through others, on a model of all their zones.
 absl::Status FaceRun::arrange() {
-  while (true) {
-    v1::ArrangeFaceRequest request;
-    for (const v1::ArrangedPart& part : parts_) {
-      v1::FacePart& asked = *request.add_parts();
-      asked.set_name(part.name());
-      *asked.mutable_plan() = part.plan();
-    }
-    const auto arrangement =
-        ground_.connection().call<v1::PlanningService>(&v1::PlanningService::Stub::ArrangeFace, request);
-    if (!arrangement.ok()) return arrangement.status();
-    remarks_.assign(arrangement->remarks().begin(), arrangement->remarks().end());
-    bool is_done = true;
-    std::vector<v1::ArrangedPart> arranged(arrangement->parts().begin(), arrangement->parts().end());
-    for (v1::ArrangedPart& part : arranged) {
-      if (!part.has_model_spec()) continue;
-      is_done = false;
-      progress_.note(absl::StrFormat("parts %s are simulated together: their zones come within %.1f mm of one another",
-                                     absl::StrJoin(part.of(), ", "), part.distance_mm()));
-      const auto model = ground_.build_for(part.model_spec(), part.name());
-      if (!model.ok()) return model.status();
-      part.mutable_plan()->set_model(model->name());
-      part.clear_model_spec();
-    }
-    // The names of the first parts stay, however often they were joined.
-    for (v1::ArrangedPart& part : arranged) {
-      google::protobuf::RepeatedPtrField<std::string> of;
-      for (const v1::ArrangedPart& before : parts_) {
-        if (std::find(part.of().begin(), part.of().end(), before.name()) != part.of().end()) of.MergeFrom(before.of());
-      }
-      *part.mutable_of() = std::move(of);
-    }
-    parts_ = std::move(arranged);
-    if (!is_done) continue;
-    for (const std::string& remark : remarks_) progress_.note("  " + remark);
-    return absl::OkStatus();
+  v1::ArrangeFaceRequest request;
+  for (const v1::ArrangedPart& part : parts_) {
+    v1::FacePart& asked = *request.add_parts();
+    asked.set_name(part.name());
+    *asked.mutable_plan() = part.plan();
   }
+  const auto arrangement =
+      ground_.connection().call<v1::PlanningService>(&v1::PlanningService::Stub::ArrangeFace, request);
+  if (!arrangement.ok()) return arrangement.status();
+  parts_.assign(arrangement->parts().begin(), arrangement->parts().end());
+  remarks_.assign(arrangement->remarks().begin(), arrangement->remarks().end());
+  for (v1::ArrangedPart& part : parts_) {
+    if (!part.has_model_spec()) continue;
+    progress_.note(absl::StrFormat("parts %s are simulated together: their zones come within %.1f mm of one another",
+                                   absl::StrJoin(part.of(), ", "), part.distance_mm()));
+    const auto model = ground_.build_for(part.model_spec(), part.name());
+    if (!model.ok()) return model.status();
+    part.mutable_plan()->set_model(model->name());
+  }
+  for (const std::string& remark : remarks_) progress_.note("  " + remark);
+  return absl::OkStatus();
 }
 
 absl::Status FaceRun::create_simulations() {

@@ -43,7 +43,7 @@ class Proposals:
 
     def arrange(self, parts: dict[str, simulation_pb2.SimulationSpec]) -> pb.FaceArrangement:
         """Which parts of a face have to be simulated together. Each plan names the model of its
-        part. An arranged part with a `model_spec` needs that model built first; then ask again.
+        part. An arranged part with a `model_spec` needs that model built first.
 
         Raises
         ------

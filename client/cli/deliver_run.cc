@@ -110,7 +110,8 @@ std::string DeliverRun::text() const {
 
 std::string DeliverRun::option_of(const std::string& field) const {
   if (absl::StartsWith(field, "plan.")) return absl::StrCat("simulation.", absl::StripPrefix(field, "plan."));
-  return absl::StrCat("--", absl::StrReplaceAll(field, {{"_", "-"}}));
+  const bool is_option = field == "max_pass_ml" || field == "tunnel_spacing_mm";
+  return is_option ? absl::StrCat("--", absl::StrReplaceAll(field, {{"_", "-"}})) : field;
 }
 
 }  // namespace lipofill::client

@@ -24,7 +24,7 @@ bool is_on_daemon(const std::string& surface) {
 ProposeRun::ProposeRun(Application& application, ProposeOptions options)
     : PlanWork(application, options), options_(std::move(options)) {}
 
-/// Said before a model is built for it.
+/// A target that is missing is told of before a model is built for it.
 absl::Status ProposeRun::check_input() {
   std::error_code error;
   if (is_on_daemon(options_.target) || std::filesystem::is_regular_file(options_.target, error)) {

@@ -36,7 +36,7 @@ void combine(const Array& part, Array& whole) {
   set_values(values, whole);
 }
 
-/// States from the one that needs a look first.
+/// The state that needs a look first.
 std::string worst_state(const nlohmann::ordered_json& parts) {
   for (const char* state : {"FAILED", "STOPPED", "FINISHED"}) {
     for (const auto& part : parts) {

@@ -54,7 +54,7 @@ std::optional<double> to_number(std::string text, char separator) {
   return value;
 }
 
-/// Which columns have what.
+/// Says which column has the names and which have the coordinates.
 struct Columns {
   int name = -1;
   std::array<int, 3> xyz{-1, -1, -1};

@@ -15,7 +15,7 @@ constexpr double kYear = 12.0;
 constexpr double kMostMonths = 60.0;
 /// Less is left of no graft that was measured; the curve of the presets stays above 0 from there.
 constexpr double kLeastShare = 0.03;
-/// From patient to patient.
+/// The share differs by so much from patient to patient.
 constexpr double kPatientSpread = 0.16;
 /// A patient is off the curve by so much at a follow-up.
 constexpr double kOffCurve = 0.03;

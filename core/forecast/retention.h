@@ -65,7 +65,7 @@ class Retention {
   double share(double month, double at_12_months) const {
     return std::clamp(1.0 - (1.0 - at_12_months) * lost(month), 0.0, 1.0);
   }
-  /// Of the share after 12 months.
+  /// How the share after 12 months is distributed.
   const Distribution& at_12_months() const { return at_12_months_; }
   /// The share that a part of all patients have less of.
   double quantile(double month, double part) const { return share(month, at_12_months_.quantile(part)); }

@@ -19,7 +19,7 @@ using google::protobuf::util::MessageDifferencer;
 
 /// A plan that does not say when it ends lasts this long [s].
 constexpr double kDefaultEnd = 60.0;
-/// Of an id.
+/// An id has at most so many letters.
 constexpr size_t kMaxName = 63;
 
 /// The path of the first thing that is drawn on a chart.
@@ -45,7 +45,7 @@ std::optional<std::string> find_on_chart(const Message& message, const std::stri
   return std::nullopt;
 }
 
-/// What differs first, as "fat.viscosity_pa_s: 15 -> 20"; empty where nothing does.
+/// Tells what differs first, as "fat.viscosity_pa_s: 15 -> 20"; empty where nothing does.
 std::string find_difference(const Message& one, const Message& other) {
   std::string report;
   MessageDifferencer differencer;
@@ -68,7 +68,7 @@ v1::ModelSpec without_region(v1::ModelSpec model) {
   return model;
 }
 
-/// What a plan says that is not of one zone or one film.
+/// The part of a plan that is about no single zone or film.
 v1::SimulationSpec common_of(v1::SimulationSpec plan) {
   plan.clear_model();
   plan.clear_films();

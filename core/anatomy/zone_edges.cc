@@ -10,19 +10,20 @@ struct EdgeRow {
   const char* region;
   double stiffness_kpa_per_mm;
   double width_mm;
+  bool feathers;
 };
 
 constexpr EdgeRow kRows[] = {
-    {"masseter", 25.0, 4.0},          // the fascia over the parotid gland and the muscle
-    {"mandibular_angle", 25.0, 4.0},  // the septum along the rim of the mandible
-    {"buccal", 8.0, 6.0},             // loose fat
-    {"malar", 25.0, 4.0},             // zygomatic and orbicularis retaining ligaments
-    {"temple", 25.0, 4.0},            // the temporal septa
-    {"tear_trough", 25.0, 3.0},       // the tear trough ligament
-    {"nasolabial", 20.0, 4.0},        // the fascia of the fold
-    {"chin", 20.0, 4.0},              // the mandibular ligament
+    {"masseter", 25.0, 4.0, false},          // the fascia over the parotid gland and the muscle
+    {"mandibular_angle", 25.0, 4.0, false},  // the septum along the rim of the mandible
+    {"buccal", 8.0, 6.0, true},              // loose fat
+    {"malar", 25.0, 4.0, false},             // zygomatic and orbicularis retaining ligaments
+    {"temple", 25.0, 4.0, false},            // the temporal septa
+    {"tear_trough", 25.0, 3.0, false},       // the tear trough ligament
+    {"nasolabial", 20.0, 4.0, false},        // the fascia of the fold
+    {"chin", 20.0, 4.0, false},              // the mandibular ligament
 };
-constexpr EdgeRow kOther = {"", 20.0, 4.0};
+constexpr EdgeRow kOther = {"", 20.0, 4.0, false};
 
 }  // namespace
 
@@ -34,7 +35,7 @@ ZoneEdge edge_of_region(std::string_view name) {
     }
   }
   return {found.stiffness_kpa_per_mm * kPascalsPerMetrePerKilopascalPerMillimetre,
-          found.width_mm * kMetresPerMillimetre};
+          found.width_mm * kMetresPerMillimetre, found.feathers};
 }
 
 }  // namespace lipofill::anatomy

@@ -5,10 +5,11 @@
 namespace lipofill::anatomy {
 
 /// How the tissue around a zone is attached: the stiffness per area that it reaches, and the
-/// distance over which it grows.
+/// distance over which it grows, and whether fat enters it.
 struct ZoneEdge {
   double stiffness = 0.0;  ///< [Pa/m]
   double width = 0.0;      ///< [m]
+  bool feathers = false;   ///< fat enters it, as loose tissue lets it
 };
 
 /// The edge of a named region ("masseter_left"), and of a zone of another shape where the name is

@@ -9,6 +9,7 @@
 #include "core/base/units.h"
 #include "core/geometry/node_values.h"
 #include "core/plan/film_walls.h"
+#include "core/plan/zone_attachment.h"
 #include "core/plan/zone_levels.h"
 #include "core/plan/zone_outline.h"
 #include "core/plan/zone_placement.h"
@@ -97,7 +98,8 @@ void remark_on_attachments(const model::FaceModel& model, const FilmSpec& spec, 
     const AttachmentSpec assumed = assume_attachment(zone);
     remarks.push_back(absl::StrCat("Around zone ", zone.name, " the layers are assumed to hold together with ",
                                    assumed.stiffness / kPascalsPerMetrePerKilopascalPerMillimetre,
-                                   " kPa/mm, which grows over ", assumed.width / kMetresPerMillimetre, " mm."));
+                                   " kPa/mm, which grows over ", assumed.width / kMetresPerMillimetre, " mm",
+                                   assumed.feathers ? "; fat feathers out there." : "."));
   }
 }
 
@@ -124,6 +126,23 @@ void remark_on_soft_base(const model::FaceModel& model, FilmLayout& layout) {
       "Film %s lies on the base, which gives under %.0f %% of it; a film on the base has bone beneath it in the model, "
       "so that all its fat pushes outwards: put it below a layer further out where there is no bone.",
       layout.name, 100.0 * soft));
+}
+
+/// A cell is beyond the outline when its centre is; a zone smaller than a cell has the cell whose
+/// centre is nearest.
+void find_feather_cells(const PlacedZones& zones, FilmLayout& layout) {
+  layout.is_feather.assign(layout.grid.n_cells(), false);
+  if (zones.distances.empty()) return;
+  std::vector<int> innermost(zones.drawn.size(), -1);
+  std::vector<double> depth(static_cast<size_t>(layout.grid.n_cells()));
+  for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {
+    const auto zone = static_cast<size_t>(layout.grid.zone_of_cell[cell]);
+    const geometry::ChartPoint centre = layout.cell_centre(cell);
+    depth[cell] = zones.distances[zone].at(centre.xi, centre.eta);
+    layout.is_feather[cell] = depth[cell] < 0.0;
+    if (innermost[zone] < 0 || depth[cell] > depth[innermost[zone]]) innermost[zone] = cell;
+  }
+  for (const int cell : innermost) layout.is_feather[cell] = false;
 }
 
 /// The edges of whole cells as lines of the chart.
@@ -221,10 +240,12 @@ absl::StatusOr<FilmLayout> place_film(const model::FaceModel& model, const FilmS
     layout.bond = bond_around_zones(model, spec, layout.level, layout.grid, layout.pieces, layout.walled_slots, zones);
   }
   for (size_t z = 0; z < spec.zones.size(); ++z) {
-    layout.outlines.push_back(spec.edge.outline == ZoneOutline::kCurve
-                                  ? zones.outlines[z]
-                                  : outline_of_cells(layout.grid, static_cast<int>(z)));
+    const bool as_drawn = spec.edge.outline == ZoneOutline::kCurve;
+    layout.outlines.push_back(as_drawn ? zones.outlines[z] : outline_of_cells(layout.grid, static_cast<int>(z)));
+    const bool stays_inside = zones.distances.empty();
+    layout.drawn.push_back(stays_inside ? layout.outlines.back() : zones.drawn[z].outline);
   }
+  find_feather_cells(zones, layout);
   layout.wall = spec.wall;
   layout.wall_stiffness = spec.wall_stiffness;
   layout.wall_friction = spec.wall_friction;

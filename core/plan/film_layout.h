@@ -27,16 +27,20 @@ struct FilmLayout {
   geometry::ScalarField initial_thickness;
   film::WalledSlots walled_slots;  ///< they lie on both sides of walls inside zones
   ConnectiveTissueSpec connective_tissue;
-  std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< of each zone, on the chart
-  std::vector<film::CellPiece> pieces;                       ///< on the quadrilaterals of the tissue, kTissue only
-  ZoneBond bond;                                             ///< of the two walls, kTissue only
-  std::vector<std::string> remarks;                          ///< what to know of its zones and base, a sentence each
+  std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< around the fat of each zone, on the chart
+  std::vector<std::vector<geometry::OutlineLoop>> drawn;     ///< each zone as drawn: fat may feather beyond
+  std::vector<bool> is_feather;         ///< the cell lies beyond the outline of its zone: fat gets there by itself only
+  std::vector<film::CellPiece> pieces;  ///< on the quadrilaterals of the tissue, kTissue only
+  ZoneBond bond;                        ///< of the two walls, kTissue only
+  std::vector<std::string> remarks;     ///< what to know of its zones and base, a sentence each
 
   /// The slot of the film's grid over a place, -1 outside its extent; and the cell whose slot it
   /// is, -1: none.
   int slot_at(const geometry::ChartPoint& place) const;
   int cell_at(const geometry::ChartPoint& place) const;
   geometry::ChartPoint cell_centre(int cell) const;
+  /// True for the cells into which fat of a zone is injected.
+  bool lies_in_zone(int cell, int zone) const { return grid.zone_of_cell[cell] == zone && !is_feather[cell]; }
 };
 
 /// A film whose numbers of cells are given: cells that nobody chose (0) are as wide as two

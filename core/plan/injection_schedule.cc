@@ -34,14 +34,14 @@ std::pair<int, int> find_zone(const std::vector<FilmLayout>& films, const std::s
 
 /// Spreads the volume evenly over the cells of a zone that do not touch its edge, where the tissue
 /// is bonded and a cannula does not go; over all of them when every cell does.
-void spread_over_zone(const film::FilmGrid& grid, int zone, const Eigen::VectorXd& areas, std::vector<int>& cells,
+void spread_over_zone(const FilmLayout& layout, int zone, const Eigen::VectorXd& areas, std::vector<int>& cells,
                       std::vector<double>& shares) {
   for (const bool inner_only : {true, false}) {
     if (!cells.empty()) break;
-    for (int cell = 0; cell < grid.n_cells(); ++cell) {
-      const auto& sides = grid.edge_of_side[cell];
+    for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {
+      const auto& sides = layout.grid.edge_of_side[cell];
       const bool inner = *std::min_element(sides.begin(), sides.end()) >= 0;
-      if (grid.zone_of_cell[cell] == zone && (inner || !inner_only)) cells.push_back(cell);
+      if (layout.lies_in_zone(cell, zone) && (inner || !inner_only)) cells.push_back(cell);
     }
   }
   double area = 0.0;
@@ -68,7 +68,7 @@ absl::StatusOr<PlacedInjection> InjectionSchedule::place(const model::FaceModel&
   const Eigen::VectorXd areas = cell_areas(model, layout.grid);
   double zone_area = 0.0;
   for (int cell = 0; cell < layout.grid.n_cells(); ++cell) {
-    if (layout.grid.zone_of_cell[cell] == zone) zone_area += areas[cell];
+    if (layout.lies_in_zone(cell, zone)) zone_area += areas[cell];
   }
   const double most = zone_area * kMaxMeanThickness;
   if (std::abs(spec.volume) > most) {
@@ -87,7 +87,7 @@ absl::StatusOr<PlacedInjection> InjectionSchedule::place(const model::FaceModel&
     injection.cells = {cell};
     injection.shares = {1.0};
   } else {
-    spread_over_zone(layout.grid, zone, areas, injection.cells, injection.shares);
+    spread_over_zone(layout, zone, areas, injection.cells, injection.shares);
   }
   if (!violations.empty()) return violations.to_status();
 

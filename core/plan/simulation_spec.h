@@ -67,6 +67,7 @@ enum class ZoneOutline {
 struct AttachmentSpec {
   double stiffness = 0.0;  ///< [Pa/m]
   double width = 0.0;      ///< [m]
+  bool feathers = false;   ///< fat goes on through it; otherwise it ends at the outline
 };
 
 /// The edge of a film's zones.

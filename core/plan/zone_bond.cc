@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "core/anatomy/zone_edges.h"
+#include "core/plan/zone_attachment.h"
 #include "core/plan/zone_distance.h"
 
 namespace lipofill::plan {
@@ -71,9 +71,9 @@ double total(const std::array<double, 4>& of_corners) {
 class AttachmentField {
  public:
   AttachmentField(const model::FaceModel& model, const FilmSpec& spec, const PlacedZones& zones)
-      : grid_(model.geometry.grid), levels_(zones.levels) {
+      : grid_(model.geometry.grid), zones_(zones.drawn) {
     for (size_t z = 0; z < spec.zones.size(); ++z) {
-      distances_.emplace_back(grid_, zones.outlines[z]);
+      distances_.emplace_back(grid_, zones_[z].outline);
       attachments_.push_back(spec.edge.attachment.value_or(assume_attachment(spec.zones[z])));
     }
   }
@@ -81,10 +81,10 @@ class AttachmentField {
   /// Stiffness per area [Pa/m]; infinite where the layers are bonded.
   double at(const ChartPoint& place) const {
     const auto inside =
-        std::find_if(levels_.begin(), levels_.end(), [&](const auto& level) { return level(place) >= 0.0; });
+        std::find_if(zones_.begin(), zones_.end(), [&](const DrawnZone& zone) { return zone.level(place) >= 0.0; });
     const Eigen::Vector3d point = geometry::skin_position(grid_, place);
-    if (inside == levels_.end()) return outside_zones(point);
-    return of_septa(point, static_cast<size_t>(inside - levels_.begin()));
+    if (inside == zones_.end()) return outside_zones(point);
+    return of_septa(point, static_cast<size_t>(inside - zones_.begin()));
   }
 
  private:
@@ -109,7 +109,7 @@ class AttachmentField {
   }
 
   const LayeredGrid& grid_;
-  const std::vector<geometry::Level>& levels_;
+  const std::vector<DrawnZone>& zones_;
   std::vector<ZoneDistance> distances_;
   std::vector<AttachmentSpec> attachments_;
 };
@@ -255,16 +255,6 @@ class BondBuilder {
 };
 
 }  // namespace
-
-AttachmentSpec assume_attachment(const ZoneSpec& zone) {
-  const auto* region = std::get_if<NamedRegion>(&zone.shape);
-  const anatomy::ZoneEdge edge = anatomy::edge_of_region(region != nullptr ? region->name : "");
-  return {edge.stiffness, edge.width};
-}
-
-bool has_rigid_edge(const model::FaceModel& model, const ZoneEdgeSpec& edge) {
-  return edge.is_rigid || (!edge.attachment.has_value() && model.is_square);
-}
 
 ZoneBond bond_around_zones(const model::FaceModel& model, const FilmSpec& spec, int level, const film::FilmGrid& grid,
                            const std::vector<film::CellPiece>& pieces, const film::WalledSlots& walled_slots,

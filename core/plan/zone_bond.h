@@ -17,18 +17,13 @@ struct ZoneBond {
   std::vector<double> stiffness;  ///< of the attachment between the two [N/m]
 };
 
-/// The attachment around a zone of a plan that gives none (anatomy/zone_edges.h).
-AttachmentSpec assume_attachment(const ZoneSpec& zone);
-
-/// True where the layers are bonded from the outline on.
-bool has_rigid_edge(const model::FaceModel& model, const ZoneEdgeSpec& edge);
-
 /// Bonds the layers outside the zones and along walls inside them.
 ///
 /// An attachment of stiffness k(x) per area goes to the open places in shares int k N_a dA, N_a
 /// bilinear. Outside the zones k = k1 d/w at a distance d along the skin from the nearest outline,
 /// and the layers share their nodes from d = w on. Inside a zone a neighbour at a distance d < w/2
-/// adds the septum between them, k1 (1 - 2 d/w).
+/// adds the septum between them, k1 (1 - 2 d/w). Fat that feathers into an attachment changes
+/// nothing of it.
 ///
 /// Rigid edges open the places whose four quadrilaterals all belong to one zone, the one with the
 /// largest part of each, and tie them by what those

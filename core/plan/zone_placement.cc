@@ -8,7 +8,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "core/base/units.h"
 #include "core/geometry/cut_rectangle.h"
+#include "core/plan/zone_attachment.h"
 #include "core/plan/zone_levels.h"
 #include "core/plan/zone_share.h"
 
@@ -24,6 +26,8 @@ using geometry::Level;
 constexpr double kLeastOfCell = 0.25;
 /// Less than this share of the zones is not told of.
 constexpr double kToldShare = 0.002;
+/// Fat whose way ends at the film's extent along less than this is not told of [m].
+constexpr double kToldLength = 1e-3;
 
 double share_of(const SlotCover& cover) {
   return 0.25 * std::accumulate(cover.begin(), cover.end(), 0.0);
@@ -180,6 +184,31 @@ void hand_out_fragments(const FilmSpec& spec, const Covers& covers, PlacedZones&
   }
 }
 
+std::vector<geometry::OutlineLoop> trace(const model::FaceModel& model, const Level& level) {
+  return geometry::trace_outline(level, 2 * model.geometry.grid.n_xi, 2 * model.geometry.grid.n_eta);
+}
+
+/// Widens what cuts the cells to where fat feathers, where it does.
+void feather_zones(const model::FaceModel& model, const FilmSpec& spec, PlacedZones& placed,
+                   std::vector<std::string>& remarks) {
+  const std::vector<double> widths = find_feather_widths(model, spec);
+  if (std::all_of(widths.begin(), widths.end(), [](double width) { return width <= 0.0; })) return;
+  for (const DrawnZone& zone : placed.drawn) {
+    placed.distances.push_back(find_signed_distance(model.geometry.grid, zone));
+  }
+  const std::vector<Level> levels = feather(placed.drawn, placed.distances, widths);
+  for (size_t z = 0; z < levels.size(); ++z) {
+    if (widths[z] <= 0.0) continue;
+    placed.cutting[z] = {levels[z]};
+    placed.outlines[z] = trace(model, least_of(spec, placed.cutting[z]));
+    const double cut = measure_cut_feather(model.geometry.grid, spec.extent, placed.distances[z], widths[z]);
+    if (cut < kToldLength) continue;
+    remarks.push_back(absl::StrFormat(
+        "Fat of zone %s would feather %.0f mm beyond its outline; the film's extent cuts that short along %.0f mm.",
+        spec.zones[z].name, widths[z] / kMetresPerMillimetre, cut / kMetresPerMillimetre));
+  }
+}
+
 void take_whole_slots(const FilmSpec& spec, const std::vector<Shape>& shapes, PlacedZones& placed) {
   for (int slot = 0; slot < spec.n_xi * spec.n_eta; ++slot) {
     const ChartPoint centre = slot_centre(spec, slot);
@@ -209,12 +238,13 @@ PlacedZones place_zones(const model::FaceModel& model, const FilmSpec& spec, Fie
   if (shapes.size() < spec.zones.size()) return placed;
   for (size_t z = 0; z < shapes.size(); ++z) {
     placed.cutting.push_back(levels_of_own_part(shapes, z));
-    placed.levels.push_back(least_of(spec, placed.cutting.back()));
-    placed.outlines.push_back(
-        geometry::trace_outline(placed.levels.back(), 2 * model.geometry.grid.n_xi, 2 * model.geometry.grid.n_eta));
+    const Level level = least_of(spec, placed.cutting.back());
+    placed.drawn.push_back({level, trace(model, level)});
+    placed.outlines.push_back(placed.drawn.back().outline);
   }
+  feather_zones(model, spec, placed, remarks);
   if (spec.edge.outline == ZoneOutline::kCells) {
-    take_whole_slots(spec, shapes, placed);
+    take_whole_slots(spec, placed.cutting, placed);
   } else {
     const Covers covers(spec, placed.cutting);
     give_slots_to_zones(spec, covers, placed);

@@ -9,6 +9,7 @@
 #include "core/geometry/level.h"
 #include "core/model/face_model.h"
 #include "core/plan/simulation_spec.h"
+#include "core/plan/zone_feather.h"
 
 namespace lipofill::plan {
 
@@ -17,11 +18,12 @@ struct PlacedZones {
   std::vector<int> zone_of_slot;       ///< whose cell a slot is, -1: of no zone
   std::vector<film::SlotCover> cover;  ///< of each slot by its own zone
   std::vector<film::SlotFragment> fragments;
-  std::vector<geometry::Level> levels;  ///< of each zone: positive where the fat is its own
-  /// The same as several levels of which all are positive there, without the corners that one of
-  /// their minimum has.
+  std::vector<DrawnZone> drawn;  ///< each zone's own part; outlines are twice as fine as the grid of the tissue
+  /// Levels of each zone that are all positive where its fat may be, without the corners that their
+  /// minimum has: as drawn, or as far as it feathers (zone_feather.h).
   std::vector<std::vector<geometry::Level>> cutting;
-  std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< of each zone, twice as fine as the grid of the tissue
+  std::vector<std::vector<geometry::OutlineLoop>> outlines;  ///< around where the fat of each zone may be
+  std::vector<geometry::ScalarField> distances;              ///< find_signed_distance where fat feathers, or none
   double uncounted = 0.0;                                    ///< slots' worth of zones that no cell could take
   double uncounted_share() const;                            ///< the same, of all that the zones cover
 };

@@ -58,7 +58,7 @@ std::vector<ZoneTask> list_tasks(const model::FaceModel& model, const plan::Simu
       }
       if (task.volume == 0.0) continue;
       for (int cell = 0; cell < film.grid.n_cells(); ++cell) {
-        if (film.grid.zone_of_cell[cell] != static_cast<int>(z)) continue;
+        if (!film.lies_in_zone(cell, static_cast<int>(z))) continue;
         task.cells.push_back(
             {film.cell_centre(cell), metric.centre.col(cell), metric.area[cell], Vector2d::Zero(), 0.0, 0.0});
       }

@@ -40,7 +40,7 @@ void add_zones(const model::FaceModel& model, const plan::FilmLayout& film, int 
   const auto first = zones.size();
   for (int z = 0; z < static_cast<int>(film.zone_names.size()); ++z) {
     zones.push_back({zones_before + z + 1, film.name, film.zone_names[static_cast<size_t>(z)], 0, 0.0,
-                     place_outline(model.geometry.grid, film.outlines[static_cast<size_t>(z)])});
+                     place_outline(model.geometry.grid, film.drawn[static_cast<size_t>(z)])});
   }
   for (int cell = 0; cell < film.grid.n_cells(); ++cell) {
     PlacedZone& zone = zones[first + static_cast<size_t>(film.grid.zone_of_cell[cell])];
@@ -56,6 +56,7 @@ std::vector<int> find_zones_under_skin(const model::FaceModel& model, const plan
   for (const SkinPoint& point : make_frame_layout(grid, placed.films, model.geometry).skin) {
     if (point.film < 0) continue;
     const auto film = static_cast<size_t>(point.film);
+    if (placed.films[film].is_feather[point.cell]) continue;
     const int zone = placed.films[film].grid.zone_of_cell[point.cell];
     numbers[static_cast<size_t>(point.vertex)] =
         zones_before[static_cast<size_t>(placed.spec_of_film[film])] + zone + 1;

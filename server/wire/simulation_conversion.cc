@@ -98,7 +98,8 @@ plan::ZoneEdgeSpec read_edge(const v1::ZoneEdge& message, const FieldReader& rea
     const FieldReader attachment = reader.below("attachment");
     edge.attachment = {attachment.required(given.has_stiffness_kpa_per_mm(), given.stiffness_kpa_per_mm(),
                                            kPascalsPerMetrePerKilopascalPerMillimetre, "stiffness_kpa_per_mm"),
-                       attachment.required(given.has_width_mm(), given.width_mm(), kMetresPerMillimetre, "width_mm")};
+                       attachment.required(given.has_width_mm(), given.width_mm(), kMetresPerMillimetre, "width_mm"),
+                       given.feathers()};
   }
   return edge;
 }

@@ -16,6 +16,8 @@ TEST(ZoneEdges, LooseFatIsSofterAndWiderThanSepta) {
   EXPECT_GT(loose.width, firm.width);
   EXPECT_DOUBLE_EQ(firm.stiffness, 25e6) << "25 kPa/mm";
   EXPECT_DOUBLE_EQ(firm.width, 4e-3);
+  EXPECT_TRUE(loose.feathers);
+  EXPECT_FALSE(firm.feathers);
 }
 
 TEST(ZoneEdges, EveryNameHasAnEdge) {

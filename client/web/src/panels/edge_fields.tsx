@@ -2,7 +2,7 @@
 import type { Attachment } from "@wire/simulation_pb";
 import { editPlan, plan } from "../plan/state";
 import { edgeOf } from "../plan/zone_edge";
-import { NumberField, SelectField } from "../widgets/fields";
+import { CheckField, NumberField, SelectField } from "../widgets/fields";
 
 const bonds = [
   { value: "region", label: "Septa by region (assumed figures)" },
@@ -44,6 +44,11 @@ export function EdgeFields({ film }: { film: number }) {
             value={bond.value.widthMm}
             field={`${at}.attachment.width_mm`}
             onChange={(value) => change((attachment) => (attachment.widthMm = value))}
+          />
+          <CheckField
+            label="Fat feathers out there"
+            value={bond.value.feathers}
+            onChange={(value) => change((attachment) => (attachment.feathers = value))}
           />
         </>
       )}

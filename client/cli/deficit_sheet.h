@@ -16,7 +16,7 @@ namespace lipofill::client {
 absl::Status draw_deficit_sheet(const Connection& connection, const v1::TargetSpec& target, const v1::Deficit& deficit,
                                 const std::filesystem::path& png);
 
-/// What that process draws: the request read from the folder that it is given.
+/// Reads what that process draws from the folder that it is given.
 absl::StatusOr<PictureRequest> read_deficit_request(const std::filesystem::path& folder);
 
 }  // namespace lipofill::client

@@ -12,7 +12,7 @@ namespace lipofill::client {
 // These describe one thing for people: in a few lines, or in one line where it stands in a list.
 std::string describe(const v1::Patient& patient);
 std::string describe(const v1::Scan& scan);
-/// What was found in the file of a scan, what was passed over, what a model will mend.
+/// Tells what was found in the file of a scan, what was passed over, what a model will mend.
 std::string surface_text(const v1::ScanReport& report);
 std::string describe(const v1::Model& model);
 

@@ -30,7 +30,7 @@ using v1::SimulationService;
 
 constexpr std::chrono::milliseconds kFollowPeriod(200);
 
-/// What holds for all parts, and what a part adds to it.
+/// Joins what holds for all parts, and what a part adds to it.
 v1::Plan plan_of_part(const v1::Plan& face, const v1::PlanPart& part) {
   v1::Plan plan = face;
   plan.clear_parts();

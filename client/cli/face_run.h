@@ -12,7 +12,7 @@
 
 namespace lipofill::client {
 
-/// Whether the plan in a file has several parts. False for a file that cannot be read.
+/// Tells whether the plan in a file has several parts. False for a file that cannot be read.
 bool has_parts(const std::string& plan);
 
 /// A plan of several parts of a face, carried out from scan to results: parts that touch are

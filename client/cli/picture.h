@@ -8,7 +8,7 @@ namespace lipofill::client {
 
 enum class Picture { kResult, kDistance, kScan, kDeficit };
 
-/// What the folder of a scan to be drawn holds.
+/// The folder of a scan to be drawn holds this file.
 inline constexpr char kScanToDraw[] = "scan.vtp";
 inline constexpr char kTextToDraw[] = "scan.txt";
 

@@ -34,7 +34,7 @@ class PlanWork {
   /// Does the work, on the model that was built.
   virtual absl::Status work() = 0;
   virtual absl::Status write_results() const = 0;
-  /// What is printed, for programs and for people.
+  /// These give what is printed, for programs and for people.
   virtual std::string json() const = 0;
   virtual std::string text() const = 0;
   /// The option behind a field of the request, or what the field is called in the plan's file.

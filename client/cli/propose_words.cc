@@ -11,7 +11,7 @@
 namespace lipofill::client {
 namespace {
 
-/// What holds a volume, as people say it.
+/// Says what holds a volume, as people say it.
 std::string bound_words(const std::string& bound) {
   static const std::map<std::string, std::string> kWords = {
       {"min_zone_ml", "the least volume of a zone"},       {"max_zone_ml", "the largest volume of a zone"},

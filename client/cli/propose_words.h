@@ -6,7 +6,7 @@
 
 namespace lipofill::client {
 
-/// What is proposed, what it reaches and what is left, as people read it.
+/// Says what is proposed, what it reaches and what is left, as people read it.
 std::string describe(const v1::Proposal& proposal);
 
 /// The option of `lipofill propose` behind a field of its request; a field of the plan as it is

@@ -14,7 +14,7 @@
 
 namespace lipofill::client {
 
-/// Where a plan is carried out, and on what.
+/// The options say where a plan is carried out, and on what.
 struct GroundOptions {
   std::string plan;
   std::string out;        ///< a private daemon keeps its state below it
@@ -31,8 +31,8 @@ struct GroundOptions {
 /// @param help_of_spawn  what --spawn does
 void add_ground_options(CLI::App& command, GroundOptions& options, const std::string& help_of_spawn);
 
-/// What a plan needs before anything is made of it: the plan itself, a daemon, a patient, the scan
-/// and the model. Each member function is one step, in their order.
+/// The ground is what a plan needs before anything is made of it: the plan itself, a daemon, a
+/// patient, the scan and the model. Each member function is one step, in their order.
 class RunGround {
  public:
   RunGround(Application& application, GroundOptions options, ProgressLine& progress)

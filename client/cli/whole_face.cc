@@ -17,7 +17,7 @@ void set_values(const std::vector<float>& values, Array& array) {
   std::memcpy(array.bytes.data(), values.data(), values.size() * sizeof(float));
 }
 
-/// Whether a value says that its vertex belongs to no zone of the part.
+/// Tells whether a value says that its vertex belongs to no zone of the part.
 bool is_nothing(float value) {
   return std::isnan(value) || value == 0.0F;
 }

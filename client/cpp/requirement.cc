@@ -54,7 +54,7 @@ const Message* find_zone(const Message& message, const FieldDescriptor* field, c
   return nullptr;
 }
 
-/// Of statistics that are named without their direction.
+/// Statistics that are named without their direction have this one.
 constexpr char kDefaultDirection[] = "simulated_to_target.";
 
 absl::StatusOr<Requirement> read_requirement(const std::string& text, const std::vector<std::string>& figures) {

@@ -16,7 +16,7 @@ namespace lipofill::client {
 absl::StatusOr<v1::Target> make_target(const Connection& connection, const v1::MakeTargetRequest& request,
                                        const BuildProgress& progress = {});
 
-/// What a face lacks to its target. A large scan takes the daemon some ten seconds.
+/// Asks what a face lacks to its target. A large scan takes the daemon some ten seconds.
 absl::StatusOr<v1::Deficit> measure_deficit(const Connection& connection, const v1::MeasureDeficitRequest& request);
 
 /// The surface of a scan: arrays "scan.points" [mm] and "scan.cells".

@@ -4,8 +4,8 @@
 
 namespace lipofill::anatomy {
 
-/// How the tissue around a zone is attached: the stiffness per area that it reaches, and the
-/// distance over which it grows, and whether fat enters it.
+/// The edge tells how the tissue around a zone is attached: the stiffness per area that it reaches,
+/// and the distance over which it grows, and whether fat enters it.
 struct ZoneEdge {
   double stiffness = 0.0;  ///< [Pa/m]
   double width = 0.0;      ///< [m]

@@ -109,7 +109,7 @@ class PanelSolveMany {
     }
   }
 
-  /// What all rows below take from the columns [j, j + n), then those.
+  /// This subtracts what all rows below take from the columns [j, j + n), then those.
   template <int n>
   LIPOFILL_INLINE void backward_columns(int j, Scalar* t) const {
     Row left[n];

@@ -9,17 +9,18 @@
 
 namespace lipofill::equilibrium {
 
-/// What the pools are to hold, and how low their pressure may be.
+/// The target says what the pools are to hold, and how low their pressure may be.
 struct PoolTarget {
   Eigen::VectorXd volume;                                         ///< of each pool, as the cells count it [m3]
   double lowest_head = -std::numeric_limits<double>::infinity();  ///< the suction limit, negated [Pa]
 };
 
-/// What each row's gap lacks [m3], for pools at the limit what their head lacks [Pa].
+/// Finds what each row's gap lacks [m3], for pools at the limit what their head lacks [Pa].
 Eigen::VectorXd find_missing(const StaticBalance& balance, const Pools& pools, const PoolTarget& target,
                              const Shape& shape);
 
-/// What the pools lack of their volume in all, as a share of it; those at the limit lack none.
+/// Computes what the pools lack of their volume in all, as a share of it; those at the limit lack
+/// none.
 double relative_lack(const Pools& pools, const PoolTarget& target, const Shape& shape, const Eigen::VectorXd& missing);
 
 /// Brings the active sets of a shape in balance to what it says: a cell whose gap is negative

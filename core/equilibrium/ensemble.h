@@ -8,7 +8,7 @@
 
 namespace lipofill::equilibrium {
 
-/// What a member of an ensemble differs in from the nominal plan.
+/// The change says what a member of an ensemble differs in from the nominal plan.
 struct MemberChange {
   Eigen::VectorXd moduli;   ///< Young's modulus of each layer over the nominal one (n_layers)
   Eigen::VectorXd volumes;  ///< of each pool, as the cells count it [m3]

@@ -74,7 +74,7 @@ class Equilibrium {
       mechanics::StepCost& cost, const std::vector<Eigen::VectorXd>& entered = {});
 
   const Pools& pools() const { return parts_.pools; }
-  /// Of each pool at rest thickness [m3].
+  /// Each pool holds this at rest thickness [m3].
   Eigen::VectorXd rest_volume() const { return pools().sum(parts_.balance.rest_volume()); }
 
   /// The shape for a target, from rest: it depends on what is passed in alone.
@@ -90,10 +90,10 @@ class Equilibrium {
   /// True when the last shape was found from rest.
   bool is_from_rest() const { return is_from_rest_; }
 
-  /// What a unit of each parameter does to the last shape; all of its volume is in. The parameters
-  /// are answered side by side.
+  /// Finds what a unit of each parameter does to the last shape; all of its volume is in. The
+  /// parameters are answered side by side.
   Sensitivities differentiate(const std::vector<TissueBeside>& beside);
-  /// Of the pools' volumes alone.
+  /// Does the same for the pools' volumes alone.
   std::vector<std::optional<Sensitivity>> differentiate_by_volume();
 
   /// For those that go other ways with the same tissue (ensemble.h).

@@ -14,7 +14,7 @@ namespace lipofill::equilibrium {
 /// A factor is of a shape far away where this share of the forces is left after a step with it.
 inline constexpr double kFarShare = 0.2;
 
-/// What HeldResponse is asked, and what it answers.
+/// A question holds what HeldResponse is asked, and what it answers.
 struct Question {
   const Shape* shape = nullptr;  ///< says which rows there are; none of its values is used
   Eigen::MatrixXd rows;          ///< A^T there [m2] (n_dofs, n_rows): find_rows

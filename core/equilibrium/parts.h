@@ -15,8 +15,8 @@
 
 namespace lipofill::equilibrium {
 
-/// What the ways to an equilibrium share: the tissue with its balance, and the factor with what it
-/// answers. Each way leaves the balance where it likes.
+/// The parts are what the ways to an equilibrium share: the tissue with its balance, and the factor
+/// with what it answers. Each way leaves the balance where it likes.
 struct Parts {
   /// What is passed here outlives the parts.
   Parts(std::unique_ptr<mechanics::TissueFactor> tissue_factor, const std::vector<plan::FilmLayout>& films,

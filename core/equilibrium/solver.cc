@@ -111,7 +111,7 @@ void Solver::bring_to(const Shape& shape) {
   balance_.bring_to(shape, springs_);
 }
 
-/// How far forces and volumes are from balance, in tolerances; infinity for a folded tissue.
+/// Tells how far forces and volumes are from balance, in tolerances; infinity for a folded tissue.
 double Solver::measure(const PoolTarget& target, double tolerance, const Shape& shape) {
   missing_ = find_missing(balance_, pools_, target, shape);
   volume_error_ = relative_lack(pools_, target, shape, missing_);

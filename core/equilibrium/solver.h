@@ -9,7 +9,7 @@
 
 namespace lipofill::equilibrium {
 
-/// What an equilibrium took.
+/// The cost is what an equilibrium took.
 struct SolverCost {
   int factors = 0;
   int iterations = 0;  ///< a force, the gaps and a solve each

@@ -10,7 +10,7 @@
 
 namespace lipofill::equilibrium {
 
-/// What acts on tissue and fat besides their own stiffness.
+/// The load is what acts on tissue and fat besides their own stiffness.
 struct StaticLoad {
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< [m/s2]
   double fat_density = 0.0;                           ///< [kg/m3]

@@ -8,7 +8,7 @@ namespace lipofill::equilibrium {
 namespace {
 
 constexpr int kMaxCorrections = 20;
-/// What is left of an answer that is good enough, as a share of it.
+/// An answer of which this is left, as a share of it, is good enough.
 constexpr double kLeftShare = 2e-3;
 /// Corrections that fall no faster than this tell nothing of what is left, and none are trusted to
 /// fall faster than that: stiff directions come last.

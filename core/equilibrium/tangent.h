@@ -14,13 +14,14 @@ struct LoadChange {
   Eigen::VectorXd volume;  ///< more in each row [m3]; without meaning for a pool at the suction limit
 };
 
-/// What the shape does then.
+/// The tangent says what the shape does then.
 struct Tangent {
   Eigen::VectorXd displacement;  ///< a value a degree of freedom [m]
   Eigen::VectorXd pressure;      ///< of each row [Pa]
 };
 
-/// How a shape in balance answers to small changes, to first order, its active sets as they are:
+/// Finds how a shape in balance answers to small changes, to first order, its active sets as they
+/// are:
 ///
 ///     J (dx, dp) = (force, volume),   J = -d(r, gap)/d(x, p) at the shape
 ///

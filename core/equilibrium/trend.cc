@@ -6,7 +6,7 @@
 namespace lipofill::equilibrium {
 namespace {
 
-/// What a move may leave a line by, as a share of its length.
+/// A move may leave a line by this share of its length.
 constexpr double kStraightness = 1e-9;
 
 /// t with b = t a; nothing where b is not along a.

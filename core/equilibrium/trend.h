@@ -5,8 +5,8 @@
 
 namespace lipofill::equilibrium {
 
-/// Where a drag goes next, learned from the shapes that it came by. J is what a unit of each pool's
-/// volume does to the unknowns (Broyden 1965):
+/// The trend says where a drag goes next, learned from the shapes that it came by. J is what a unit
+/// of each pool's volume does to the unknowns (Broyden 1965):
 ///
 ///     y + J dV,   J <- J + (dy - J dV) dV^T / (dV . dV)
 ///
@@ -20,7 +20,7 @@ class Trend {
   /// @param per_volume  J to begin with (n_unknowns, n_pools)
   void begin(Eigen::MatrixXd per_volume);
 
-  /// How the unknowns change with the volumes [m3].
+  /// Tells how the unknowns change with the volumes [m3].
   Eigen::VectorXd predict(const Eigen::VectorXd& volume) const;
   /// Learns that a change of the volumes brought a change of the unknowns.
   void learn(const Eigen::VectorXd& volume, const Eigen::VectorXd& unknowns);

@@ -13,8 +13,8 @@ struct CellPiece {
   int quad_i = 0;  ///< of the finer grid
   int quad_j = 0;
   geometry::ChartBox box;
-  /// What counts of the four points of the 2 x 2 Gauss rule on the box, s fastest: 1 each where the
-  /// piece lies inside the zone's outline, less where the outline cuts it
+  /// The shares say what counts of the four points of the 2 x 2 Gauss rule on the box, s fastest: 1
+  /// each where the piece lies inside the zone's outline, less where the outline cuts it
   /// (geometry::fit_gauss_shares).
   std::array<double, 4> share = {1.0, 1.0, 1.0, 1.0};
 };

@@ -31,8 +31,8 @@ struct LeakyWall {
 using SlotCover = std::array<double, 4>;
 inline constexpr SlotCover kWholeSlot = {1.0, 1.0, 1.0, 1.0};
 
-/// What a zone covers of a slot that is not its own cell, or too little to be one: it counts as
-/// part of the cell beside.
+/// A fragment is what a zone covers of a slot that is not its own cell, or too little to be one: it
+/// counts as part of the cell beside.
 struct Fragment {
   int cell = 0;
   int slot = 0;
@@ -70,7 +70,7 @@ struct FilmGrid {
 /// Slots on the two sides of a wall inside a zone, the lower one first.
 using WalledSlots = std::set<std::pair<int, int>>;
 
-/// What a zone covers of a slot, by slot; see FilmGrid::fragments.
+/// A fragment is what a zone covers of a slot, by slot; see FilmGrid::fragments.
 struct SlotFragment {
   int into_slot = 0;  ///< the slot of the cell that it counts to
   int slot = 0;

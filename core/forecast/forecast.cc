@@ -158,7 +158,7 @@ const ForecastFigure& Making::pressure_at_once(const std::string& zone) const {
   });
 }
 
-/// How much to inject into the zones that are filled, and in how many sessions.
+/// Finds how much to inject into the zones that are filled, and in how many sessions.
 absl::Status Making::plan_volumes() {
   const Retention& retention = forecast_.retention;
   const double last = months_.back();

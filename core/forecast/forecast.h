@@ -19,8 +19,8 @@
 
 namespace lipofill::forecast {
 
-/// What was measured some time after the injection: the fat that is left, or the volume between
-/// the skin before and then.
+/// A follow-up is what was measured some time after the injection: the fat that is left, or the
+/// volume between the skin before and then.
 struct FollowUp {
   double month = 0.0;
   bool is_skin_volume = false;
@@ -28,7 +28,7 @@ struct FollowUp {
   double standard_error = 0.0;  ///< [m3]
 };
 
-/// What a forecast is asked; lipofill.v1.ForecastSpec in SI.
+/// The request says what a forecast is asked; lipofill.v1.ForecastSpec in SI.
 struct ForecastRequest {
   plan::SimulationSpec plan;
   int members = 500;
@@ -77,7 +77,7 @@ struct MemberFailure {
   int first = 0;
 };
 
-/// What is known of a plan's result.
+/// A forecast is what is known of a plan's result.
 struct Forecast {
   std::vector<UncertainInput> inputs;  ///< the last is retention
   int members = 0;

@@ -75,8 +75,8 @@ Indices indices_of(const std::vector<Term>& terms, const VectorXd& coefficients,
   return found;
 }
 
-/// What is left of the variance where each member is told by the others: the residuals over one
-/// less the diagonal of Psi (Psi^T Psi)^-1 Psi^T.
+/// Computes what is left of the variance where each member is told by the others: the residuals
+/// over one less the diagonal of Psi (Psi^T Psi)^-1 Psi^T.
 double leave_one_out(const MatrixXd& values, const VectorXd& figure, const VectorXd& residual) {
   const Eigen::HouseholderQR<MatrixXd> qr(values);
   const MatrixXd q = qr.householderQ() * MatrixXd::Identity(values.rows(), values.cols());

@@ -7,8 +7,8 @@
 
 namespace lipofill::forecast {
 
-/// How much of a figure's variance an input causes, by Sobol: by itself, and with all that it does
-/// together with others. With standard errors.
+/// The influence tells how much of a figure's variance an input causes, by Sobol: by itself, and
+/// with all that it does together with others. With standard errors.
 struct Influence {
   double first_order = 0.0;
   double total = 0.0;

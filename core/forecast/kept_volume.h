@@ -10,9 +10,9 @@
 
 namespace lipofill::forecast {
 
-/// What the plan's own shape says of volumes: solves of the settled shape with all of the plan's
-/// volumes multiplied by one number. Errors as TrialShape::create and find.
-/// Checked by tests/unit/forecast/forecast_test.cc.
+/// This finds what the plan's own shape says of volumes: solves of the settled shape with all of
+/// the plan's volumes multiplied by one number. Errors as TrialShape::create and find. Checked by
+/// tests/unit/forecast/forecast_test.cc.
 
 /// The share of the plan's fat that a follow-up found. From the volume that the skin has gained it
 /// is the share with which the plan's shape gains as much (secants), with the error of the

@@ -22,7 +22,7 @@ constexpr int kPart = 128;
 /// by 3 mm (45 + 45 faces).
 constexpr double kPressureChange = 0.085 / 3e-3;
 
-/// What the inputs make of a member.
+/// This tells what the inputs make of a member.
 class Members {
  public:
   Members(const model::FaceModel& model, const plan::SimulationSpec& plan, const std::vector<UncertainInput>& inputs,
@@ -37,7 +37,7 @@ class Members {
     for (size_t k = 0; k < inputs_.size(); ++k) set(inputs_[k], design_.values(member, static_cast<Index>(k)), change);
     return change;
   }
-  /// How far the zones lie off [m].
+  /// Tells how far the zones lie off [m].
   double place(Index member, Quantity along) const {
     for (size_t k = 0; k < inputs_.size(); ++k) {
       if (inputs_[k].quantity == along) return design_.values(member, static_cast<Index>(k));

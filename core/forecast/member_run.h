@@ -20,7 +20,7 @@ struct Design {
 /// Sobol's points through the inverse of each distribution.
 Design draw_design(const std::vector<UncertainInput>& inputs, int members);
 
-/// What came of the members that settled, in their order.
+/// The table holds what came of the members that settled, in their order.
 struct MemberTable {
   std::vector<int> settled;                                  ///< their rows in the design
   std::vector<MemberFailure> failures;                       ///< of the others

@@ -18,7 +18,7 @@ struct RetentionPoint {
   double share = 0.0;
 };
 
-/// What is asked for; lipofill.v1.Retention.
+/// The specification says what is asked for; lipofill.v1.Retention.
 struct RetentionSpec {
   RetentionPreset preset = RetentionPreset::kPooled;
   std::vector<RetentionPoint> points;  ///< a curve of one's own in place of the preset; may be empty
@@ -32,8 +32,8 @@ struct KeptShare {
   double standard_error = 0.0;
 };
 
-/// How much of injected fat is left after t months, as far as it is known. Patients differ in one
-/// number, the share a that is left after 12 months:
+/// Retention tells how much of injected fat is left after t months, as far as it is known. Patients
+/// differ in one number, the share a that is left after 12 months:
 ///
 ///     R(t) = 1 - (1 - a) L(t),   L(t) = (1 - C(t)) / (1 - C(12)),   a normal(m, s), cut off to [0.03, 1]
 ///
@@ -65,7 +65,7 @@ class Retention {
   double share(double month, double at_12_months) const {
     return std::clamp(1.0 - (1.0 - at_12_months) * lost(month), 0.0, 1.0);
   }
-  /// How the share after 12 months is distributed.
+  /// Tells how the share after 12 months is distributed.
   const Distribution& at_12_months() const { return at_12_months_; }
   /// The share that a part of all patients have less of.
   double quantile(double month, double part) const { return share(month, at_12_months_.quantile(part)); }

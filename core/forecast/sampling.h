@@ -5,8 +5,8 @@
 
 namespace lipofill::forecast {
 
-/// What OpenTURNS does for forecasts; no other source includes it, for it takes long to compile.
-/// Thread-safe: calls take turns, since OpenTURNS keeps state for all. Decision record:
+/// This is what OpenTURNS does for forecasts; no other source includes it, for it takes long to
+/// compile. Thread-safe: calls take turns, since OpenTURNS keeps state for all. Decision record:
 /// core/doc/decisions/037-ensembles.md. Checked by tests/unit/forecast/sampling_test.cc.
 
 /// The first points of Sobol's sequence in (0, 1) (n, dimensions): they fill the cube more evenly
@@ -24,7 +24,7 @@ using Term = std::vector<int>;
 /// @param stratum      of the hyperbolic set: products enter by strata of equal size of their degrees
 std::vector<Term> select_terms(const Eigen::MatrixXd& standard, const std::vector<bool>& is_gaussian,
                                const Eigen::VectorXd& figure, int stratum);
-/// How many products there are to select from.
+/// Counts how many products there are to select from.
 int count_terms(int inputs, int stratum);
 
 }  // namespace lipofill::forecast

@@ -14,7 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Volumes count as reached to this share.
 constexpr double kReached = 1e-6;
 
-/// What is left of earlier sessions at a month.
+/// Tells what is left of earlier sessions at a month.
 VectorXd present_at(const Retention& retention, const std::vector<Session>& sessions, double month, Index zones) {
   VectorXd present = VectorXd::Zero(zones);
   for (const Session& session : sessions) {

@@ -10,7 +10,8 @@
 
 namespace lipofill::forecast {
 
-/// What to inject into a zone so that a volume is left, and what is left of what is planned. [m3]
+/// The forecast of a zone says what to inject into a zone so that a volume is left, and what is
+/// left of what is planned. [m3]
 struct ZoneForecast {
   std::string zone;
   double planned = 0.0;
@@ -20,7 +21,7 @@ struct ZoneForecast {
   double most_at_once = 0.0;  ///< infinity where no pressure that was tried reaches the band
 };
 
-/// What goes into each zone at a time. [m3]
+/// A session says what goes into each zone at a time. [m3]
 struct Session {
   double month = 0.0;
   Eigen::VectorXd inject;

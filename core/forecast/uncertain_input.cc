@@ -56,8 +56,8 @@ constexpr double kVolumeSpread = 0.05;
 /// Landmarks that are placed by hand lie off by this, each way [m].
 constexpr double kPlaceSpread = 1.5e-3;
 
-/// What is possible: soft tissue has 0.1 kPa to 10 MPa; a layer thinner than a third or thicker
-/// than three times of what was measured is another layer.
+/// These bounds say what is possible: soft tissue has 0.1 kPa to 10 MPa; a layer thinner than a
+/// third or thicker than three times of what was measured is another layer.
 constexpr double kLeastModulus = 100.0;
 constexpr double kMostModulus = 1e7;
 constexpr double kLeastThickness = 1.0 / 3.0;

@@ -27,8 +27,9 @@ struct UncertainInput {
   std::string describe() const;
 };
 
-/// What is uncertain of a plan on a model by default, but for retention: stiffness and thickness of
-/// each layer by its kind, the volume that each zone gets, and where landmarks put the zones.
+/// Lists what is uncertain of a plan on a model by default, but for retention: stiffness and
+/// thickness of each layer by its kind, the volume that each zone gets, and where landmarks put the
+/// zones.
 ///
 /// A published range of E or of a thickness counts as four standard deviations of the logarithm
 /// (Hozo et al. 2005 for samples of some tens), and the model's own value as the median: the range

@@ -12,10 +12,10 @@
 
 namespace lipofill::geometry {
 
-/// What ends at a vertex of the patch.
+/// This tells what ends at a vertex of the patch.
 enum class SkinBorder { kNone, kFold, kScanEnd };
 
-/// What an obstacle is called where layers fold under it.
+/// This is what an obstacle is called where layers fold under it.
 inline constexpr char kSharpBend[] = "a bend of the skin too sharp for the layers";
 
 /// A point that the model should keep clear of, and what is there ("the mouth").
@@ -24,7 +24,7 @@ struct Obstacle {
   Eigen::Vector3d position;  ///< [m]
 };
 
-/// What to chart: the footprints with a margin around them.
+/// The request says what to chart: the footprints with a margin around them.
 struct ChartAroundRequest {
   std::vector<Footprint> footprints;
   double margin = 0.0;  ///< [m] wanted on every side

@@ -23,7 +23,8 @@ struct ObstaclePoint {
   bool may_cut = false;    ///< the rectangle gives up some of what it should hold, rather than hold this
 };
 
-/// What became of a side: the rectangle's, in the order low x, high x, low y, high y.
+/// The rectangle tells what became of a side: the rectangle's, in the order low x, high x, low y,
+/// high y.
 struct ClearRectangle {
   Rectangle rectangle;
   /// The obstacle that each side moved in for, -1 where none did.

@@ -42,7 +42,7 @@ void check_layer(const LayerGeometry& layer, const std::string& field, FieldViol
                                                        " mm, must be above 0 and at most ", kThickestLayerMm));
 }
 
-/// What is not known yet counts as 1, or as nothing.
+/// A count that is not known yet counts as 1, or as nothing.
 void check_count(const GridSize& size, const std::vector<LayerGeometry>& layers, FieldViolations& violations) {
   long long through = 0;
   for (const LayerGeometry& layer : layers) through += std::max(1, layer.elements_through);

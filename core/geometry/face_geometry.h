@@ -89,8 +89,8 @@ struct FaceGeometry {
   double max_rider_distance = 0.0;        ///< [m]  from the resampled skin
   double rms_rider_distance = 0.0;        ///< [m]
   std::vector<std::string> scan_remarks;  ///< what cleaning did, a sentence each
-  /// What is unusual about scan, landmarks and region, a sentence each with its figure: to know
-  /// before relying on it.
+  /// These say what is unusual about scan, landmarks and region, a sentence each with its figure:
+  /// to know before relying on it.
   std::vector<std::string> cautions;
 };
 

@@ -10,8 +10,8 @@ namespace lipofill::geometry {
 /// A function of the chart that is positive inside an outline, zero on it and negative outside.
 using Level = std::function<double(const ChartPoint&)>;
 
-/// Where a function of [0, 1] with values of opposite sign at the ends is zero: three steps of
-/// false position, the first of which is exact where the function is linear.
+/// Finds where a function of [0, 1] with values of opposite sign at the ends is zero: three steps
+/// of false position, the first of which is exact where the function is linear.
 double find_zero(double value_at_0, double value_at_1, const std::function<double(double)>& value_at);
 
 /// A closed line around what is inside, which lies to its left: the last point is joined to the

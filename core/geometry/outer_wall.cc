@@ -22,7 +22,7 @@ constexpr int kFewestTriangles = 100;
 constexpr int kMostSamples = 4000;
 constexpr double kSharpestJoint = 0.5;  // cosine between the normals of triangles of one wall
 
-/// Where the surface lies behind a triangle, or before it: whichever is nearer.
+/// This tells where the surface lies behind a triangle, or before it: whichever is nearer.
 struct Opposite {
   double distance = std::numeric_limits<double>::infinity();  ///< [m]
   Eigen::Vector3d place = Eigen::Vector3d::Zero();            ///< where the ray meets it [m]

@@ -140,7 +140,7 @@ absl::Status parse_line(std::string_view line, size_t number, PlyHeader& header,
   return absl::OkStatus();
 }
 
-/// Where a line of the text ends.
+/// Finds where a line of the text ends.
 size_t end_of(std::string_view bytes, std::string_view line) {
   return static_cast<size_t>(line.data() + line.size() - bytes.data());
 }

@@ -7,7 +7,7 @@
 
 namespace lipofill::geometry {
 
-/// How a polygon could be cut into triangles.
+/// This tells how a polygon could be cut into triangles.
 enum class PolygonCut {
   kFan,       ///< from its first corner
   kEars,      ///< ear by ear: it is not convex

@@ -205,7 +205,7 @@ absl::Status check_size(const SurfaceMesh& patch) {
                                                     kMaxPatchVertices, ": decimate it first"));
 }
 
-/// How far each vertex lies beyond the nearest disc; not positive within.
+/// Tells how far each vertex lies beyond the nearest disc; not positive within.
 std::vector<double> compute_distances_beyond(const SurfaceMesh& skin, const std::vector<SkinDisc>& discs) {
   const VertexGraph graph = make_vertex_graph(skin);
   std::vector<double> beyond(skin.n_vertices(), kUnreached);

@@ -128,7 +128,7 @@ void turn_right_side_out(SurfaceMesh& mesh, std::vector<std::string>& remarks) {
   remarks.push_back("The surface was inside out and has been turned.");
 }
 
-/// What the steps of finding a region share.
+/// This is what the steps of finding a region share.
 struct Cleaned {
   CleanedSurface surface;
   HeadAxes axes;

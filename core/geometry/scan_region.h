@@ -14,8 +14,8 @@ namespace lipofill::geometry {
 /// The outer skin around a region of a scan, before it is charted.
 struct ScanRegion {
   RegionPatch patch;  ///< whole_of_vertex: into the cleaned scan
-  /// What to chart where the region follows from footprints, their centres on the skin; the patch
-  /// has no corners then.
+  /// This says what to chart where the region follows from footprints, their centres on the skin;
+  /// the patch has no corners then.
   std::optional<ChartAroundRequest> around;
   HeadAxes axes;
   std::vector<int> cleaned_of_scan;   ///< cleaned vertex of each vertex of the scan, -1 where none

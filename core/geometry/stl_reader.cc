@@ -158,7 +158,7 @@ absl::StatusOr<long long> StlText::read_vertex() {
   return merger_.vertex_at(xyz, where());
 }
 
-/// What follows the word "facet". The normal counts for nothing: the corners give it.
+/// Reads what follows the word "facet". The normal counts for nothing: the corners give it.
 absl::Status StlText::read_facet() {
   std::string_view word = next();
   while (!word.empty() && !is_word(word, "outer") && !is_word(word, "endfacet")) word = next();
@@ -175,7 +175,7 @@ absl::Status StlText::read_facet() {
   return builder_.add_polygon(corners_, where());
 }
 
-/// What follows the word "solid" and its name.
+/// Reads what follows the word "solid" and its name.
 absl::Status StlText::read_solid() {
   for (;;) {
     const std::string_view word = next();

@@ -31,7 +31,8 @@ struct SurfaceCheck {
 
 /// A surface as a file has it, and what of the file is not in it.
 struct ScannedSurface : SurfaceMesh {
-  /// What was passed over, left out or read in spite of a fault, a sentence each, with counts.
+  /// The remarks say what was passed over, left out or read in spite of a fault, a sentence each,
+  /// with counts.
   std::vector<std::string> remarks;
 };
 

@@ -85,7 +85,8 @@ std::optional<double> parse_number(std::string_view word) {
 
 std::optional<double> parse_number_or_nan(std::string_view word) {
   if (const auto value = parse_whole<double>(word)) return value;
-  // What is too large or too small for a double, and the spellings of Microsoft's library.
+  // This takes what is too large or too small for a double, and the spellings of Microsoft's
+  // library.
   if (word.find(".#") != std::string_view::npos) {
     const std::string_view kind = word.substr(word.find(".#") + 2);
     const bool is_known = begins_with_ignoring_case(kind, "qnan") || begins_with_ignoring_case(kind, "snan") ||

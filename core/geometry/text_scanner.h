@@ -27,7 +27,7 @@ class LineScanner {
   size_t line_number_ = 0;
 };
 
-/// How often a line ends in a piece of text.
+/// Counts how often a line ends in a piece of text.
 size_t count_line_ends(std::string_view text);
 
 /// True when the text goes on with `word`, given in lower case, whatever the case in the text.

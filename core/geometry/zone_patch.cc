@@ -15,8 +15,8 @@
 namespace lipofill::geometry {
 namespace {
 
-/// How much larger than what it must hold a patch is cut: the skin curves, and edges are longer
-/// than the way.
+/// A patch is cut larger than what it must hold by this: the skin curves, and edges are longer than
+/// the way.
 constexpr double kPatchSpare = 1.3;
 constexpr double kPatchSpareLength = 0.015;  // [m]
 

@@ -47,7 +47,7 @@ struct AroundDisc {
   double radius = 0.0;  ///< [m]
 };
 
-/// What a model is to hold, in place of the corners of its region.
+/// This says what a model is to hold, in place of the corners of its region.
 struct AroundSpec {
   std::vector<std::string> regions;  ///< named regions of the face
   std::vector<AroundDisc> discs;
@@ -73,7 +73,7 @@ struct ThicknessRange {
   double max = 0.0;
 };
 
-/// How much of the bone was found; shares are of the nodes of the chart.
+/// The finding tells how much of the bone was found; shares are of the nodes of the chart.
 struct BoneFinding {
   double measured_share = 0.0;  ///< where a ray met bone
   double limited_share = 0.0;   ///< where the layer ends above the bone, at its greatest thickness

@@ -18,8 +18,9 @@ struct LayerThickness {
   std::vector<geometry::ScalarField> fields;  ///< [m] a field a layer
   std::vector<ThicknessRange> ranges;
   std::optional<BoneFinding> bone;
-  /// Where the tissue does not end on bone, with a layer down to the bone only: 1 at a node of the
-  /// skin where no bone was met or the layer ends above it, 0 where it ends on bone, smoothed.
+  /// This says where the tissue does not end on bone, with a layer down to the bone only: 1 at a
+  /// node of the skin where no bone was met or the layer ends above it, 0 where it ends on bone,
+  /// smoothed.
   Eigen::VectorXd off_bone;
 };
 

@@ -13,7 +13,7 @@
 
 namespace lipofill::model {
 
-/// How tissue at rest answers, by a factor there: core/equilibrium/rest_start.h.
+/// The response tells how tissue at rest answers, by a factor there: core/equilibrium/rest_start.h.
 struct RestResponse {
   Eigen::MatrixXd of_pools;  ///< to a pressure in each pool [m/Pa] (n_dofs, n_pools)
   Eigen::VectorXd of_load;   ///< to what is out of balance [m] (n_dofs)

@@ -10,8 +10,8 @@ namespace lipofill::plan {
 /// lipofill.v1.SimulationSpec, values in the units of those names.
 absl::Status check_plan(const SimulationSpec& spec);
 
-/// Whether the plan has no more films, injections and probes than it may have: only then is it
-/// worth placing.
+/// Tells whether the plan has no more films, injections and probes than it may have: only then is
+/// it worth placing.
 bool has_placeable_size(const SimulationSpec& spec);
 
 /// Checks that the plan can take one more injection. RESOURCE_EXHAUSTED naming the bound when it

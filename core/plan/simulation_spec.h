@@ -54,7 +54,7 @@ struct ConnectiveTissueSpec {
   double entry_pressure = 0.0;  ///< fat beside the cell enters it above this pressure [Pa]; 0: it is open
 };
 
-/// How the outlines of a film's zones become cells.
+/// This says how the outlines of a film's zones become cells.
 enum class ZoneOutline {
   kCurve,  ///< as drawn: the outline cuts the cells it crosses
   kCells,  ///< as the paper has it: the cells whose centres lie inside, whole

@@ -27,7 +27,7 @@ std::array<double, 4> corner_weights(double s, double t) {
   return {(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t};
 }
 
-/// What the zones have of each quadrilateral of the level.
+/// The cover says what the zones have of each quadrilateral of the level.
 struct QuadCover {
   std::vector<std::map<int, double>> zones;    ///< those with a part of it, and its share
   std::vector<std::array<double, 4>> covered;  ///< int N_a over the parts, by corner; 1/4 each where all is covered

@@ -10,7 +10,7 @@
 
 namespace lipofill::plan {
 
-/// How the two walls of a film on tissue hold together, by the places of its level
+/// The bond says how the two walls of a film on tissue hold together, by the places of its level
 /// (nodes_per_level).
 struct ZoneBond {
   std::vector<bool> open;         ///< the place has a node on each wall; elsewhere the layers share one

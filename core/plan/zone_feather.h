@@ -19,8 +19,9 @@ struct DrawnZone {
 /// as the grid of the tissue and bilinear between.
 geometry::ScalarField find_signed_distance(const geometry::LayeredGrid& grid, const DrawnZone& zone);
 
-/// Where the fat of each zone may be: inside its outline, and where it feathers no further than its
-/// width beyond and no nearer to another zone than to its own. Each level is positive there.
+/// Finds where the fat of each zone may be: inside its outline, and where it feathers no further
+/// than its width beyond and no nearer to another zone than to its own. Each level is positive
+/// there.
 /// @param distances  find_signed_distance of each zone
 /// @param widths  how far fat of each zone feathers [m], 0: not at all
 /// Checked by tests/unit/plan/zone_feather_test.cc.

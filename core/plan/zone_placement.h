@@ -13,7 +13,7 @@
 
 namespace lipofill::plan {
 
-/// What the zones of a film cover of its slots.
+/// The placed zones say what the zones of a film cover of its slots.
 struct PlacedZones {
   std::vector<int> zone_of_slot;       ///< whose cell a slot is, -1: of no zone
   std::vector<film::SlotCover> cover;  ///< of each slot by its own zone

@@ -11,7 +11,7 @@
 
 namespace lipofill::planning {
 
-/// How far to look for what belongs together, and how long to go on.
+/// The rule says how far to look for what belongs together, and how long to go on.
 struct AlignmentRule {
   double first_reach = 0.02;  ///< [m]
   double last_reach = 0.01;   ///< [m]; the reach shrinks evenly to it over the first half of the iterations
@@ -31,7 +31,7 @@ struct AlignmentRule {
 RigidMotion align_samples(const SurfaceSamples& moving, const SkinMatcher& fixed, const RigidMotion& start,
                           const AlignmentRule& rule);
 
-/// How well samples lie on a skin.
+/// The fit tells how well samples lie on a skin.
 struct Fit {
   int samples = 0;                ///< all that were asked for
   int over = 0;                   ///< of these lie over the skin: a place within the reach belongs to them
@@ -47,9 +47,9 @@ struct Fit {
 
 Fit measure_fit(const SurfaceSamples& moving, const SkinMatcher& fixed, const RigidMotion& motion, double reach);
 
-/// What the residuals leave undetermined. With the normal matrix N of the system above over the
-/// samples that count, s their root mean square and n_eff of n of them independent (skin is smooth:
-/// one for every (15 mm)^2),
+/// The certainty tells what the residuals leave undetermined. With the normal matrix N of the
+/// system above over the samples that count, s their root mean square and n_eff of n of them
+/// independent (skin is smooth: one for every (15 mm)^2),
 ///
 ///     C = s^2 (n / n_eff) N^-1,     e(p)^2 = trace(J_p C J_p^T)
 ///

@@ -8,8 +8,8 @@
 
 namespace lipofill::planning {
 
-/// How a zone is worked through from one entry: its cells seen from above, and in tunnels that fan
-/// out. Checked by tests/unit/planning/delivery_test.cc.
+/// A fan says how a zone is worked through from one entry: its cells seen from above, and in
+/// tunnels that fan out. Checked by tests/unit/planning/delivery_test.cc.
 
 /// A cell of a zone, seen from above: along the length of the zone, and across it.
 struct ZoneCell {
@@ -29,7 +29,7 @@ void look_from_above(const Eigen::Vector3d& up, std::vector<ZoneCell>& cells);
 /// @param spacing  of tunnels at the far end, at most [m]
 std::vector<std::vector<ZoneCell>> lay_fan(const std::vector<ZoneCell>& cells, double spacing);
 
-/// Where fat is laid along a tunnel, and the area of the zone that each place serves [m2].
+/// Chooses where fat is laid along a tunnel, and the area of the zone that each place serves [m2].
 std::vector<std::pair<ZoneCell, double>> choose_places(const std::vector<ZoneCell>& tunnel, int most);
 
 double sum_areas(const std::vector<ZoneCell>& cells);

@@ -9,8 +9,8 @@
 
 namespace lipofill::planning {
 
-/// How near a part of the skin is to its target, both ways. core/doc/comparison.md defines every
-/// figure.
+/// A comparison tells how near a part of the skin is to its target, both ways.
+/// core/doc/comparison.md defines every figure.
 struct Comparison {
   geometry::DistanceStatistics skin_to_target;
   geometry::DistanceStatistics target_to_skin;
@@ -26,7 +26,7 @@ struct Comparison {
 absl::StatusOr<Comparison> compare_surfaces(const geometry::SurfaceMesh& part, const geometry::SurfaceMesh& target,
                                             const Unwanted& unwanted = nullptr);
 
-/// Where a scan and its target end.
+/// The rim is where a scan and its target end.
 struct Rim {
   Eigen::Matrix3Xd of_skin;    ///< vertices, as find_rim [m]
   Eigen::Matrix3Xd of_target;  ///< the same

@@ -12,7 +12,7 @@
 
 namespace lipofill::planning {
 
-/// What a region of the face lacks to its target.
+/// This is what a region of the face lacks to its target.
 struct RegionDeficit {
   std::string region;  ///< empty for all
   double area = 0.0;   ///< [m2]
@@ -22,7 +22,7 @@ struct RegionDeficit {
   int vertices = 0;
 };
 
-/// What a face lacks to its target, before anything is simulated.
+/// The deficit is what a face lacks to its target, before anything is simulated.
 struct Deficit {
   RegionDeficit all;
   std::vector<RegionDeficit> regions;  ///< by name; those with skin that is compared
@@ -33,7 +33,7 @@ struct Deficit {
   std::vector<std::string> remarks;      ///< what is unusual, a sentence each
 };
 
-/// What to compare with what.
+/// The task says what to compare with what.
 struct DeficitTask {
   const geometry::SurfaceMesh& scan;
   const geometry::SurfaceMesh& target;   ///< in the frame of the scan

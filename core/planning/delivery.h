@@ -13,13 +13,13 @@
 
 namespace lipofill::planning {
 
-/// How fat is laid; lipofill.v1.PlanDeliveryRequest in SI.
+/// The settings say how fat is laid; lipofill.v1.PlanDeliveryRequest in SI.
 struct DeliverySettings {
   double max_pass = 0.1e-6;      ///< one pass lays at most this [m3]
   double tunnel_spacing = 5e-3;  ///< between the far ends of neighbouring tunnels [m]
 };
 
-/// Where the cannula goes in.
+/// The entry is where the cannula goes in.
 struct CannulaEntry {
   std::string zone;
   std::string below_layer;
@@ -59,9 +59,10 @@ struct Delivery {
 absl::StatusOr<Delivery> make_delivery(const model::FaceModel& model, const plan::SimulationSpec& plan,
                                        const DeliverySettings& settings);
 
-/// How far the skin of the plan as given lies from that of the plan, at the nodes, both at rest or
-/// at their end: found directly, or in steps where the plan asks for them, which fat with a yield
-/// stress does. Errors of Simulation::create; FAILED_PRECONDITION for one that fails; CANCELLED.
+/// Tells how far the skin of the plan as given lies from that of the plan, at the nodes, both at
+/// rest or at their end: found directly, or in steps where the plan asks for them, which fat with a
+/// yield stress does. Errors of Simulation::create; FAILED_PRECONDITION for one that fails;
+/// CANCELLED.
 absl::StatusOr<geometry::DistanceStatistics> compare_delivery(std::shared_ptr<const model::FaceModel> model,
                                                               const plan::SimulationSpec& plan,
                                                               const Delivery& delivery, const Unwanted& unwanted);

@@ -14,7 +14,7 @@ namespace lipofill::planning {
 /// the skin of the other, and a model has that much skin around its zones (decision 041).
 inline constexpr double kTouching = 12e-3;
 
-/// Where a part of a face is.
+/// The place says where a part of a face is.
 struct PartPlace {
   std::vector<int> skin;  ///< vertices of the scan that ride on its model, ascending
   Eigen::Matrix3Xd fat;   ///< the middle of each cell of its zones, on the skin at rest [m]
@@ -24,7 +24,7 @@ struct PartPlace {
 /// Checked by tests/unit/planning/plan_parts_test.cc.
 absl::StatusOr<PartPlace> place_part(const model::FaceModel& model, const plan::SimulationSpec& plan);
 
-/// How near zones of the two come to one another [m]; infinity for a part without any.
+/// Tells how near zones of the two come to one another [m]; infinity for a part without any.
 double find_distance(const PartPlace& one, const PartPlace& other);
 
 /// Vertices of the scan that ride on the models of both.

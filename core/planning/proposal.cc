@@ -16,7 +16,7 @@
 namespace lipofill::planning {
 namespace {
 
-/// Of the vertices of a scan [m].
+/// The vertices of a scan lie this far off [m].
 constexpr double kScanNoise = 0.4e-3;
 /// Zones that can move the skin over less of what is missing do not reach it.
 constexpr double kLeastWithinReach = 0.1;

@@ -18,7 +18,7 @@
 
 namespace lipofill::planning {
 
-/// What to reach, with what, within which bounds; lipofill.v1.ProposalSpec in SI.
+/// A request says what to reach, with what, within which bounds; lipofill.v1.ProposalSpec in SI.
 struct ProposalRequest {
   plan::SimulationSpec plan;  ///< its zones are sought; it may have no film where zones are proposed
   ProposalBounds bounds;
@@ -30,7 +30,7 @@ struct ProposalRequest {
   std::optional<TissueSpread> spread;  ///< that the plan has to hold for
 };
 
-/// What goes into one zone.
+/// This is what goes into one zone.
 struct ProposedVolume {
   std::string zone;
   std::string below_layer;

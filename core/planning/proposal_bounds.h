@@ -18,7 +18,7 @@ struct VolumeRange {
   double high = kUnbounded;
 };
 
-/// What volumes must keep to.
+/// The bounds are what volumes must keep to.
 struct ProposalBounds {
   VolumeRange each_zone;                     ///< of zones that have no own
   std::map<std::string, VolumeRange> zones;  ///< by name
@@ -32,7 +32,7 @@ struct ProposalBounds {
   }
 };
 
-/// Whether the zones of a plan are those of its proposal, or some of them and others.
+/// This tells whether the zones of a plan are those of its proposal, or some of them and others.
 enum class ZoneNumber { kFixed, kSought };
 
 /// Checks that some volumes keep to the bounds. INVALID_ARGUMENT with violations of
@@ -40,10 +40,10 @@ enum class ZoneNumber { kFixed, kSought };
 /// and "bounds.max_total_ml". Checked by tests/unit/planning/proposal_bounds_test.cc.
 absl::Status check_bounds(const ProposalBounds& bounds, const plan::SimulationSpec& plan, ZoneNumber number);
 
-/// What holds a volume; kPath: no more of the fat goes in.
+/// This names what holds a volume; kPath: no more of the fat goes in.
 enum class Bound { kNone, kMinZone, kMaxZone, kMaxTotal, kMaxPressure, kMaxLift, kPath };
 
-/// What solving took.
+/// The cost is what solving took.
 struct ProposalCost {
   int shapes = 0;       ///< settled shapes
   int derivatives = 0;  ///< of a shape by a volume

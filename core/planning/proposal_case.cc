@@ -18,7 +18,7 @@ using Eigen::Index;
 constexpr double kReach = 40e-3;
 /// Points farther from it have no target opposite [m].
 constexpr double kFar = 30e-3;
-/// Of the skin that must have a target opposite.
+/// So much of the skin must have a target opposite.
 constexpr double kLeastOpposite = 0.3;
 /// A target no farther than this is the skin itself [m].
 constexpr double kSame = 5e-6;

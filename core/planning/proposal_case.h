@@ -12,7 +12,7 @@
 
 namespace lipofill::planning {
 
-/// How near the skin that lacks something is to the target.
+/// The closeness tells how near the skin that lacks something is to the target.
 struct Closeness {
   geometry::DistanceStatistics skin_to_target;
   geometry::DistanceStatistics target_to_skin;
@@ -30,7 +30,7 @@ struct ProposalCase {
   Eigen::VectorXd distance;       ///< of the points at rest, NaN without a target opposite [m]
   double missing = 0.0;           ///< of the points that lack something: area times distance [m3]
 
-  /// Of the points that lack something [m2].
+  /// The points that lack something have this area [m2].
   double lacking_area() const;
   /// Root of the mean square over the points that lack something, and what 95 of 100 do not exceed.
   double rms(const Eigen::VectorXd& distances) const;

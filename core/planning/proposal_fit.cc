@@ -33,7 +33,8 @@ constexpr double kTolerance = 1e-3;
 /// Volumes this near to a bound are held by it [m3], pressures and lifts within this share.
 constexpr double kAtBound = 3e-9;
 constexpr double kAtShare = 5e-3;
-/// Of the volume that the tissue takes, where it does not take all: from there the fit goes on.
+/// Where the tissue does not take all of the volume, the fit goes on from this share of what it
+/// takes.
 constexpr double kBackFromPathEnd = 0.9;
 
 constexpr double kPerMl = kCubicMetresPerMillilitre;

@@ -28,12 +28,12 @@ struct SkinPoints {
   Eigen::Matrix3Xd gather(const Eigen::Matrix3Xd& on_nodes) const;
 };
 
-/// Of a face its scan's vertices, of a square its nodes.
+/// Makes them from the vertices of a face's scan, or from the nodes of a square.
 SkinPoints make_skin_points(const model::FaceModel& model);
 /// The nodes of the skin, face or square.
 SkinPoints make_node_points(const model::FaceModel& model);
 
-/// How a point lies to a target.
+/// The side tells how a point lies to a target.
 struct TargetSide {
   double distance = 0.0;                                 ///< positive outside of it [m]
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< gradient of the distance
@@ -61,10 +61,10 @@ class TargetDistance {
   std::unique_ptr<geometry::SurfaceLocator> locator_;
 };
 
-/// What the skin at rest lacks to the target, positive where the target lies outside, at the nodes
-/// of the skin: smoothed over the chart by a Gaussian of `length`, so that noise of a scan is not
-/// taken for a hollow. Nodes that have no target opposite take the mean of those around, 0 where
-/// none has. Checked by tests/unit/planning/proposal_test.cc.
+/// Finds what the skin at rest lacks to the target, positive where the target lies outside, at the
+/// nodes of the skin: smoothed over the chart by a Gaussian of `length`, so that noise of a scan is
+/// not taken for a hollow. Nodes that have no target opposite take the mean of those around, 0
+/// where none has. Checked by tests/unit/planning/proposal_test.cc.
 geometry::ScalarField smooth_deficit(const model::FaceModel& model, const TargetDistance& target, double length);
 
 }  // namespace lipofill::planning

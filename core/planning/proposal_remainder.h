@@ -12,7 +12,7 @@ namespace lipofill::planning {
 /// spreads the lift of a zone wider than the target wants it; it lies outside its target already.
 enum class Cause { kBound, kOutOfReach, kStiffness, kAboveTarget };
 
-/// What a proposal leaves under one zone, or beside all of them, for one cause.
+/// A remainder is what a proposal leaves under one zone, or beside all of them, for one cause.
 struct Remainder {
   std::string zone;  ///< the one that moves this skin most; empty: none does
   Cause cause = Cause::kStiffness;
@@ -21,13 +21,13 @@ struct Remainder {
   double rms = 0.0;                ///< [m]
 };
 
-/// What is left of the skin that lacked something, and of skin that was outside its target or has
-/// been lifted past it, from the most volume to the least; parts of less than 0.02 mL are left out.
-/// Checked by tests/unit/planning/proposal_test.cc.
+/// Tells what is left of the skin that lacked something, and of skin that was outside its target or
+/// has been lifted past it, from the most volume to the least; parts of less than 0.02 mL are left
+/// out. Checked by tests/unit/planning/proposal_test.cc.
 std::vector<Remainder> explain_remainders(const ProposalCase& face, const std::vector<SoughtZone>& zones,
                                           const FittedVolumes& fitted);
 
-/// Of what is missing, the share under skin that the zones can move.
+/// Tells which share of what is missing lies under skin that the zones can move.
 double share_within_reach(const ProposalCase& face, const FittedVolumes& fitted);
 
 /// One sentence, with its figures.

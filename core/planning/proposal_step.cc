@@ -15,7 +15,7 @@
 namespace lipofill::planning {
 namespace {
 
-/// What unknowns that nothing else decides are held by, of the largest column of A.
+/// Unknowns that nothing else decides are held by this, of the largest column of A.
 constexpr double kHold = 1e-7;
 /// Weights of broken limits, of the largest column of A: each begins where the last one ended.
 constexpr double kWeights[] = {1e1, 1e2, 1e3, 1e4};

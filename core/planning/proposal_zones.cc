@@ -10,7 +10,8 @@
 namespace lipofill::planning {
 namespace {
 
-/// Of an injection that the plan does not have [m3/s]; the shape at rest does not depend on it.
+/// An injection that the plan does not have flows at this rate [m3/s]; the shape at rest does not
+/// depend on it.
 constexpr double kRate = 0.5e-6;
 /// Volumes are whole multiples of it [mL].
 constexpr double kResolutionMl = 1e-3;

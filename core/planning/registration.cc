@@ -100,7 +100,7 @@ absl::StatusOr<Registration> register_by_shape(const Roles& roles, const Refiner
   return registration;
 }
 
-/// How well the mirror image of the small surface fits, from wherever it fits best.
+/// Finds how well the mirror image of the small surface fits, from wherever it fits best.
 absl::StatusOr<Registration> register_mirrored(const Roles& roles, const Unwanted& unwanted) {
   const SkinSurface mirrored = reflect(roles.small, Reflection{Eigen::Vector3d::UnitX(), 0.0});
   const Roles mirrored_roles(roles.moving_is_small ? mirrored : roles.large,

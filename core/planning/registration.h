@@ -12,11 +12,11 @@
 
 namespace lipofill::planning {
 
-/// Where a registration started.
+/// This tells where a registration started.
 enum class RegistrationStart { kLandmarks, kShape, kInPlace };
 
-/// How one surface lies on another, and how sure that is. Shares and distances are those of samples
-/// of the smaller of the two surfaces.
+/// A registration tells how one surface lies on another, and how sure that is. Shares and distances
+/// are those of samples of the smaller of the two surfaces.
 struct Registration {
   RigidMotion motion;  ///< brings the moved surface into the frame of the fixed one
   RegistrationStart start = RegistrationStart::kShape;

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 /// Fits of the bound at most; two do for most.
 constexpr int kMaxFits = 6;
-/// What each fit aims at, of the band.
+/// Each fit aims at this share of the band.
 constexpr double kAim = 0.99;
 
 /// The inverse of the normal distribution, by Newton's iteration on erfc.

@@ -8,7 +8,8 @@
 
 namespace lipofill::planning {
 
-/// How well the tissue is known, and what has to hold all the same; lipofill.v1.TissueSpread in SI.
+/// The spread says how well the tissue is known, and what has to hold all the same;
+/// lipofill.v1.TissueSpread in SI.
 struct TissueSpread {
   double pressure_band = 0.0;  ///< settled pressures stay below it [Pa]
   double share = 0.95;         ///< of the members, those that do
@@ -16,7 +17,7 @@ struct TissueSpread {
   double modulus_spread = 0.2;  ///< standard deviation of ln E of each layer
 };
 
-/// What it takes that a plan holds.
+/// This is what it takes that a plan holds.
 struct Robustness {
   int members = 0;
   int members_below = 0;

@@ -18,7 +18,7 @@ struct MarkedScan {
   geometry::Landmarks landmarks;
 };
 
-/// What a face is to look like, in the frame of its scan.
+/// The target is what a face is to look like, in the frame of its scan.
 struct Target {
   geometry::SurfaceMesh surface;
   std::optional<Registration> registration;  ///< of a surface from elsewhere
@@ -32,7 +32,7 @@ struct Target {
 absl::StatusOr<Target> make_mirrored_target(const MarkedScan& face, FaceSide healthy,
                                             const Unwanted& unwanted = nullptr);
 
-/// Where a surface from elsewhere is.
+/// This tells where a surface from elsewhere is.
 enum class SurfacePlacement { kRegistered, kInPlace };
 
 /// A surface from elsewhere, brought into the frame of the face: all of its vertices in their

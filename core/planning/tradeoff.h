@@ -9,7 +9,7 @@
 
 namespace lipofill::planning {
 
-/// What is reached with some volumes.
+/// A trade-off is what is reached with some volumes.
 struct TradeOff {
   Eigen::VectorXd volumes;   ///< a zone [m3]
   Eigen::VectorXd pressure;  ///< [Pa]

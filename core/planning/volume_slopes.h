@@ -10,8 +10,8 @@
 
 namespace lipofill::planning {
 
-/// What a unit of each zone's volume does to the skin and to the pressures of the zones: solved for
-/// at a shape, and then learned from the steps (Broyden). Checked by
+/// The slopes are what a unit of each zone's volume does to the skin and to the pressures of the
+/// zones: solved for at a shape, and then learned from the steps (Broyden). Checked by
 /// tests/unit/planning/proposal_test.cc.
 class VolumeSlopes {
  public:
@@ -21,11 +21,11 @@ class VolumeSlopes {
   /// the nodes of the skin [m] and the pressures [Pa].
   void learn(const Eigen::VectorXd& volumes, const Eigen::Matrix3Xd& skin, const Eigen::VectorXd& pressure);
 
-  /// Of the nodes of the skin by each volume [1/m2].
+  /// Each volume moves the nodes of the skin by this [1/m2].
   const std::vector<Eigen::Matrix3Xd>& skin() const { return skin_; }
-  /// Of each zone's pressure (rows) by each volume [Pa/m3].
+  /// Each volume (columns) changes each zone's pressure (rows) by this [Pa/m3].
   const Eigen::MatrixXd& pressure() const { return pressure_; }
-  /// Of the points' distances from the target by the volumes [1/m2] (n, zones).
+  /// Finds how the points' distances from the target change with the volumes [1/m2] (n, zones).
   /// @param direction  the gradient of each distance
   Eigen::MatrixXd of_distance(const SkinPoints& points, const Eigen::Matrix3Xd& direction) const;
 

@@ -115,7 +115,7 @@ plan::FilmSpec& film_below(plan::SimulationSpec& plan, const std::string& layer)
   return plan.films.back();
 }
 
-/// What is added in one plane.
+/// A plane holds what is added in one plane.
 struct Plane {
   std::string layer;
   double level = 0.0;

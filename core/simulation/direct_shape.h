@@ -56,9 +56,9 @@ class DirectShape {
   Members begin_ensemble(const mechanics::SimulationState& from, const std::vector<Eigen::VectorXd>& injected);
   /// The same beside the shape whose pools hold so much [m3].
   equilibrium::Ensemble begin_ensemble(const mechanics::SimulationState& from, const Eigen::VectorXd& pool_volumes);
-  /// What the pools hold in a state with nothing injected [m3].
+  /// Tells what the pools hold in a state with nothing injected [m3].
   Eigen::VectorXd pool_volumes(const mechanics::SimulationState& from) const;
-  /// What finds them.
+  /// This finds them.
   equilibrium::Equilibrium& equilibrium() { return *equilibrium_; }
 
  private:

@@ -42,7 +42,7 @@ absl::StatusOr<std::unique_ptr<Simulation>> settle(const Simulation& fine,
   return unknown(absl::StrCat("on a grid half as fine the plan does not come to rest in ", kMostSteps, " steps"));
 }
 
-/// What `share` of the values do not exceed; 0 without any.
+/// Finds the value that `share` of the values do not exceed; 0 without any.
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));

@@ -7,8 +7,8 @@
 
 namespace lipofill::simulation {
 
-/// What the width of the hexahedra makes of a settled result: how far it is from that of a grid
-/// without end. Estimates; signs are not known.
+/// The error says what the width of the hexahedra makes of a settled result: how far it is from
+/// that of a grid without end. Estimates; signs are not known.
 struct DiscretisationError {
   double lift = 0.0;      ///< of the largest displacement of the skin, as a share of it
   double pressure = 0.0;  ///< of a zone's mean pressure, as a share of it; the largest over the zones

@@ -28,7 +28,7 @@ std::vector<int> order_outermost_first(const std::vector<plan::FilmLayout>& film
   return order;
 }
 
-/// Whether a place lies inside loops, by the number of times a line from it crosses them.
+/// Tells whether a place lies inside loops, by the number of times a line from it crosses them.
 bool lies_inside(const std::vector<geometry::OutlineLoop>& outline, const geometry::ChartPoint& place) {
   bool inside = false;
   for (const geometry::OutlineLoop& loop : outline) {

@@ -64,8 +64,8 @@ std::vector<int> find_zones_under_skin(const model::FaceModel& model, const plan
   return numbers;
 }
 
-/// Whether the tissue can open a cell: a node of a quadrilateral that overlaps it is doubled, and
-/// one copy is free.
+/// Tells whether the tissue can open a cell: a node of a quadrilateral that overlaps it is doubled,
+/// and one copy is free.
 bool can_open(const geometry::LayeredGrid& tissue, const mechanics::HeldMesh& held, const coupling::WallNodes& walls,
               const film::FilmGrid& film, int cell) {
   constexpr double kRoundOff = 1e-9;

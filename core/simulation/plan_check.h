@@ -24,12 +24,12 @@ struct PlacedZone {
   std::vector<Eigen::Matrix3Xd> outline;
 };
 
-/// What can be said of a plan on a model before its tissue is set up.
+/// The check says what can be said of a plan on a model before its tissue is set up.
 struct PlanCheck {
   /// Everything for which Simulation::create would refuse the plan, but for what only the tissue at
   /// work shows: an initial thickness that it cannot open to.
   std::vector<FieldViolation> violations;
-  /// What a simulation of the plan would do that its author may not have meant.
+  /// The remarks say what a simulation of the plan would do that its author may not have meant.
   std::vector<FieldViolation> remarks;
   std::vector<PlacedZone> zones;  ///< those that could be placed
   /// Number of the zone of the outermost film under each node of the skin; 0: none.

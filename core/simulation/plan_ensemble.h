@@ -12,7 +12,7 @@
 
 namespace lipofill::simulation {
 
-/// What a member differs in from a plan on its model, as multiples.
+/// The change says what a member differs in from a plan on its model, as multiples.
 struct PlanChange {
   Eigen::VectorXd moduli;     ///< of each layer's Young's modulus (n_layers)
   Eigen::VectorXd thickness;  ///< of each layer's thickness (n_layers)
@@ -29,7 +29,7 @@ struct MemberShape {
   Eigen::VectorXd volume;    ///< of the fat in each zone [m3] (n_zones)
 };
 
-/// What came of a member: a shape at each time, or why there is none.
+/// The result tells what came of a member: a shape at each time, or why there is none.
 struct MemberResult {
   std::string failure;  ///< empty: it settled at every time
   std::vector<MemberShape> shapes;

@@ -1,4 +1,4 @@
-// What to know before relying on a result.
+// This file says what to know before relying on a result.
 
 #include <cmath>
 

@@ -125,9 +125,9 @@ class Simulation {
   const StepReport& report() const;
   std::vector<ZoneReport> zone_reports() const;
   std::vector<LigamentReport> ligament_reports() const;
-  /// What to know before relying on the figures, a sentence each: the remarks on the model and on
-  /// its zones, and once it has ended a scaled Jacobian below 0.2, a pressure above 10 kPa, and
-  /// tissue whose volume is off by more than 2 %.
+  /// These say what to know before relying on the figures, a sentence each: the remarks on the
+  /// model and on its zones, and once it has ended a scaled Jacobian below 0.2, a pressure above 10
+  /// kPa, and tissue whose volume is off by more than 2 %.
   std::vector<std::string> remarks() const;
   /// A report a layer, from the skin inwards; none for a model without layers.
   std::vector<LayerReport> layer_reports() const;

@@ -16,7 +16,8 @@ namespace {
 
 /// Fat that is added to a zone comes after the plan's own; how fast does not matter at rest [m3/s].
 constexpr double kRateOfAdded = 1e-6;
-/// Of the largest displacement, over which the volume that a small motion sweeps is measured [m].
+/// The volume that a small motion sweeps is measured over this much of the largest displacement
+/// [m].
 constexpr double kSweep = 1e-6;
 /// Members of an ensemble that are found side by side; between such groups somebody may cancel.
 constexpr size_t kMembersTogether = 25;
@@ -173,7 +174,8 @@ std::vector<ShapeSensitivity> TrialShape::find_sensitivities() {
   return all;
 }
 
-/// Of an injection's volume, the share that each pool receives; a zone in two pieces is two pools.
+/// Tells the share of an injection's volume that each pool receives; a zone in two pieces is two
+/// pools.
 Eigen::VectorXd TrialShape::pool_shares(size_t injection) const {
   const Simulation::Impl& impl = *simulation_->impl_;
   const auto placed = impl.schedule.place(*impl.model, impl.films, impl.spec.injections[injection], 0.0);

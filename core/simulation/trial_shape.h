@@ -38,13 +38,13 @@ struct PoolReport {
   double head = 0.0;    ///< pressure at the origin of coordinates [Pa]
 };
 
-/// Whether the fat of a zone is part of a pool.
+/// Tells whether the fat of a zone is part of a pool.
 bool has_zone(const PoolReport& pool, const std::string& zone);
 
 enum class ShapeParameter { kPoolVolume, kLayerModulus, kLayerThickness };
 
-/// What one more unit of a parameter does to a shape, to first order: of a pool's volume [1/m3], or
-/// of the logarithm of a layer's Young's modulus or thickness [1].
+/// A sensitivity tells what one more unit of a parameter does to a shape, to first order: of a
+/// pool's volume [1/m3], or of the logarithm of a layer's Young's modulus or thickness [1].
 struct ShapeSensitivity {
   ShapeParameter parameter = ShapeParameter::kPoolVolume;
   std::string name;                   ///< of the pool, as PoolReport::zones, or of the layer
@@ -79,12 +79,12 @@ class TrialShape {
   const std::string& reason() const { return reason_; }
   bool is_from_rest() const { return is_from_rest_; }
   std::vector<PoolReport> pools() const { return pools_; }
-  /// Of each pool's volume, then of each layer's modulus, then of each layer's thickness; none
-  /// where the share is below 1. A parameter whose answer is not found is left out.
+  /// Finds those by each pool's volume, then by each layer's modulus, then by each layer's
+  /// thickness; none where the share is below 1. A parameter whose answer is not found is left out.
   std::vector<ShapeSensitivity> find_sensitivities();
-  /// Of the volume of each of the plan's injections, in their order, from those of the pools that
-  /// it goes into; an injection whose answer is not found has none. Empty where the share is below
-  /// 1. The pressures are those of the pools, as everywhere.
+  /// Finds those by the volume of each of the plan's injections, in their order, from those of the
+  /// pools that it goes into; an injection whose answer is not found has none. Empty where the
+  /// share is below 1. The pressures are those of the pools, as everywhere.
   std::vector<std::optional<ShapeSensitivity>> find_injection_sensitivities();
   /// Pressures of the zones, the mean over each as in the zone reports, where the layers' moduli
   /// are these times those of the model and the volumes those of the last shape [Pa] (zones,
@@ -93,7 +93,7 @@ class TrialShape {
   /// unwanted.
   absl::StatusOr<Eigen::MatrixXd> find_member_pressures(const std::vector<Eigen::VectorXd>& moduli,
                                                         const Unwanted& unwanted);
-  /// Of its nodes [m] (3, nodes_per_level).
+  /// Its nodes have moved by this [m] (3, nodes_per_level).
   Eigen::Matrix3Xd skin_displacement() const;
 
  private:

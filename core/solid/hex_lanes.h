@@ -7,9 +7,9 @@
 
 namespace lipofill::solid {
 
-// What batches of hexahedra have in common, whatever their law: how positions come from the nodes,
-// how forces and blocks of stiffness get back to them, and how nodes are turned into modes. Nodes
-// are in binary order.
+// This is what batches of hexahedra have in common, whatever their law: how positions come from the
+// nodes, how forces and blocks of stiffness get back to them, and how nodes are turned into modes.
+// Nodes are in binary order.
 
 /// Modes of the nodes that are linear along one local coordinate, and those that are products of
 /// two or three.

@@ -11,8 +11,8 @@
 
 namespace lipofill::solid {
 
-// What the assemblers of all laws have in common: which hexahedra may share a batch, and the sums
-// over batches.
+// This is what the assemblers of all laws have in common: which hexahedra may share a batch, and
+// the sums over batches.
 
 /// For each pair of nodes in binary order, true when the first comes before the second in the mesh.
 using NodeOrder = std::array<bool, kNodePairs>;

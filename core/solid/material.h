@@ -7,7 +7,7 @@
 
 namespace lipofill::solid {
 
-/// How stress follows from strain.
+/// The law says how stress follows from strain.
 enum class TissueLaw {
   kCorotational,  ///< the paper's: linear between stress and strain in each element's rotated frame (tissue.h)
   kNeoHookean,    ///< nearly incompressible at any strain (neo_hookean_batch.h)

@@ -18,7 +18,7 @@
 
 namespace lipofill::server {
 
-/// What the door lets in.
+/// The bounds say what the door lets in.
 struct DoorBounds {
   size_t connections = 1024;
   size_t connections_per_peer = 128;         ///< of one address of the network; loopback counts in all only

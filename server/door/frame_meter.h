@@ -10,9 +10,9 @@
 
 namespace lipofill::server {
 
-/// What all connections together may do beyond the share that each has of its own. What gRPC keeps
-/// of a stream that was reset is gone once it got round to it: measured, it grows with the backlog
-/// alone, and 2,000 a second leave none.
+/// The allowances say what all connections together may do beyond the share that each has of its
+/// own. What gRPC keeps of a stream that was reset is gone once it got round to it: measured, it
+/// grows with the backlog alone, and 2,000 a second leave none.
 struct SharedAllowances {
   TokenBucket streams{2000.0, 2000.0};
   TokenBucket resets{200.0, 1000.0};

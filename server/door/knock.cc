@@ -12,7 +12,7 @@
 namespace lipofill::server {
 namespace {
 
-/// What an HTTP/2 connection begins with, and empty SETTINGS.
+/// This is what an HTTP/2 connection begins with, and empty SETTINGS.
 constexpr std::string_view kHello("PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n\0\0\0\4\0\0\0\0\0", 33);
 
 absl::Status failed(const char* what) {

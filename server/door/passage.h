@@ -29,14 +29,14 @@ class Passage {
   void move(Clock::time_point now);
   /// True when there is nothing more to pass on: to be closed.
   bool is_over() const { return is_broken_ || !hostile_.empty() || (up_.is_done() && down_.is_done()) || left_; }
-  /// What the caller did that no client does; empty for nothing.
+  /// Tells what the caller did that no client does; empty for nothing.
   const std::string& hostile() const { return hostile_; }
   /// The moment to move again, where frames wait for their rate.
   const std::optional<Clock::time_point>& wait() const { return wait_; }
   /// True once the caller has sent what a connection begins with.
   bool has_begun() const { return has_begun_; }
 
-  /// What is to be waited for at each socket: EPOLLIN, EPOLLOUT.
+  /// Tells what is to be waited for at each socket: EPOLLIN, EPOLLOUT.
   uint32_t outer_events() const;
   uint32_t inner_events() const;
 

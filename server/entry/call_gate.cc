@@ -71,7 +71,7 @@ AuditEntry audit_entry(const Call& call, const std::string& outcome) {
   return entry;
 }
 
-/// Whether all that is kept back is there, or could be put back.
+/// Tells whether all that is kept back is there, or could be put back.
 bool has_memory() {
   if (!MemoryReserve::is_short()) return true;
   MemoryReserve::refill();

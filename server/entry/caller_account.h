@@ -8,14 +8,14 @@
 
 namespace lipofill::server {
 
-/// What callers keep in memory, counted for each and in all, and bounded. For one thread at a time.
-/// Checked by tests/unit/server/entry/caller_account_test.cc.
+/// The account counts what callers keep in memory, for each and in all, and bounds it. For
+/// one thread at a time. Checked by tests/unit/server/entry/caller_account_test.cc.
 class CallerAccount {
  public:
   struct Bounds {
     uint64_t bytes = 0;            ///< of all callers
     uint64_t bytes_of_caller = 0;  ///< of one
-    /// Whether the only thing of a caller may take more than bytes_of_caller.
+    /// This tells whether the only thing of a caller may take more than bytes_of_caller.
     bool lone_may_be_larger = false;
   };
 

@@ -16,7 +16,7 @@ struct grpc_call;
 
 namespace lipofill::server {
 
-/// How many calls may be under way, and what they may keep in memory.
+/// The bounds say how many calls may be under way, and what they may keep in memory.
 struct CallBounds {
   /// The transport keeps some 20 kB of each. Callers who need not say who they are are one caller.
   size_t calls = 8192;

@@ -43,7 +43,7 @@ class StreamClock {
   }
 
  private:
-  /// How often a stream that ends with a token looks at the clock of the wall.
+  /// A stream that ends with a token looks at the clock of the wall this often.
   static constexpr std::chrono::seconds kLook{5};
 
   Clock::duration heartbeat_{};

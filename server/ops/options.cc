@@ -138,7 +138,7 @@ void print_settings(const std::vector<Setting>& settings, const GivenValues& giv
   }
 }
 
-/// Whether strangers on the network get no further than the handshake: each must show a
+/// Tells whether strangers on the network get no further than the handshake: each must show a
 /// certificate.
 bool asks_certificates(const SecuritySettings& security) {
   return security.has_tls() && !security.tls_client_ca_file.empty() && !security.tls_client_certificate_optional;

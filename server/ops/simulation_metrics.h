@@ -7,8 +7,8 @@
 
 namespace lipofill::server {
 
-/// What becomes of simulations: they end, are parked, and keep their state. Checked by
-/// tests/unit/server/ops/metrics_test.cc.
+/// These metrics tell what becomes of simulations: they end, are parked, and keep their state.
+/// Checked by tests/unit/server/ops/metrics_test.cc.
 class SimulationMetrics {
  public:
   explicit SimulationMetrics(prometheus::Registry& registry);

@@ -23,7 +23,8 @@ struct StepFigures {
   int fallbacks = 0;
 };
 
-/// What the steps of all simulations cost. Checked by tests/unit/server/ops/metrics_test.cc.
+/// These metrics tell what the steps of all simulations cost. Checked by
+/// tests/unit/server/ops/metrics_test.cc.
 class StepMetrics {
  public:
   explicit StepMetrics(prometheus::Registry& registry);

@@ -108,7 +108,7 @@ class UploadStream : public grpc::ServerReadReactor<v1::UploadScanRequest> {
   ScanRecord record_;
 };
 
-/// What was found in the file, what of it is not in the surface, and what a model will mend.
+/// Tells what was found in the file, what of it is not in the surface, and what a model will mend.
 v1::ScanReport describe_scan(const geometry::ScannedSurface& surface) {
   v1::ScanReport report = to_scan_report(surface, geometry::check_surface(surface));
   for (const std::string& remark : surface.remarks) report.add_read_remarks(remark);

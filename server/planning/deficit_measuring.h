@@ -7,8 +7,8 @@
 
 namespace lipofill::server {
 
-/// What a face lacks to its target. RESOURCE_EXHAUSTED for a scan of more vertices than an answer
-/// holds, unless only figures are asked for.
+/// Measures what a face lacks to its target. RESOURCE_EXHAUSTED for a scan of more vertices than an
+/// answer holds, unless only figures are asked for.
 absl::StatusOr<v1::Deficit> measure_deficit_of(Backend& backend, const v1::MeasureDeficitRequest& request,
                                                const Unwanted& unwanted);
 

@@ -31,7 +31,7 @@ struct ForecastOrder {
   std::vector<forecast::UncertainInput> inputs;  ///< of the plan, but for retention
 };
 
-/// What is uncertain of a model that need not be loaded for that.
+/// Lists what is uncertain of a model that need not be loaded for that.
 absl::StatusOr<std::vector<forecast::UncertainInput>> inputs_on(const ModelRecord& record,
                                                                 const forecast::ForecastRequest& request) {
   v1::ModelSpec message;

@@ -5,8 +5,8 @@
 
 namespace lipofill::server {
 
-/// What is known of a plan's result. See proto/lipofill/v1/forecast_service.proto for what each
-/// call does.
+/// The service tells what is known of a plan's result. See proto/lipofill/v1/forecast_service.proto
+/// for what each call does.
 class ForecastService : public v1::ForecastService::CallbackService {
  public:
   explicit ForecastService(Backend& backend) : backend_(backend) {}

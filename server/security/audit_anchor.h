@@ -44,8 +44,8 @@ class AuditAnchor {
   int slot_ = 0;
 };
 
-/// What the anchor's file says; nothing where there is no file. DATA_LOSS when neither of its slots
-/// can be read or, where a key is given, is signed with it.
+/// Reads what the anchor's file says; nothing where there is no file. DATA_LOSS when neither of its
+/// slots can be read or, where a key is given, is signed with it.
 absl::StatusOr<std::optional<AuditHead>> read_anchor(const std::string& path, const AnchorKey* key);
 
 }  // namespace lipofill::server

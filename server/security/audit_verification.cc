@@ -27,7 +27,7 @@ class AuditReader {
 
   const AuditSummary& summary() const { return summary_; }
 
-  /// Whether the line that the anchor has was among those read.
+  /// Tells whether the line that the anchor has was among those read.
   absl::Status check_anchored() const {
     if (!anchor_ || has_anchored_ || anchor_->number == 0) return absl::OkStatus();
     return absl::DataLossError(absl::StrCat("the last line is number ", summary_.head.number,

@@ -22,7 +22,7 @@ class Acknowledgements {
   /// The client has taken the frame of this sequence and all before it. INVALID_ARGUMENT for one
   /// that was not sent.
   absl::Status acknowledge(uint64_t epoch, uint64_t sequence);
-  /// What is on its way is of a stretch that was left: no answer is waited for.
+  /// Takes note that what is on its way is of a stretch that was left: no answer is waited for.
   void rewind() { on_their_way_.clear(); }
 
  private:

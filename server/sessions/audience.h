@@ -31,7 +31,7 @@ class Audience {
   void show(double time_s, bool at_rest, const MakeFrame& make_frame);
   /// Shows a frame to all.
   void offer(const std::shared_ptr<const Frame>& frame);
-  /// What comes may be of an earlier simulated time than what came.
+  /// Takes note that what comes may be of an earlier simulated time than what came.
   void rewind();
   /// Ends the stream of every viewer.
   void close(const absl::Status& status);

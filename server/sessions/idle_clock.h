@@ -5,8 +5,8 @@
 
 namespace lipofill::server {
 
-/// How long nobody has wanted anything of a session: whoever watches it or is about to ask
-/// something holds it. Thread-safe and never waits. Checked by
+/// The clock tells how long nobody has wanted anything of a session: whoever watches it or is about
+/// to ask something holds it. Thread-safe and never waits. Checked by
 /// tests/unit/server/sessions/idle_clock_test.cc.
 class IdleClock {
  public:

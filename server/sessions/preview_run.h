@@ -22,7 +22,7 @@ class PreviewRun {
  public:
   explicit PreviewRun(bool wanted);
 
-  /// What is known of it; nothing when none is asked for.
+  /// Tells what is known of it; nothing when none is asked for.
   const std::optional<PreviewView>& view() const { return view_; }
   /// True as long as it has a step to take.
   bool is_due() const;

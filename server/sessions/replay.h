@@ -18,7 +18,7 @@ struct SessionHistory {
   SimulationState state = SimulationState::kReady;
   double wall_s = 0.0;     ///< spent RUNNING
   bool was_there = false;  ///< it was made before the daemon was started again
-  /// What the state has in it already, and the commands after that.
+  /// This is what the state has in it already, and the commands after that.
   uint64_t last_command = 0;
   struct Taken {
     uint64_t number = 0;
@@ -65,7 +65,8 @@ class Replay {
   const std::optional<std::string>& stop_reason() const { return history_.stop_reason; }
   void end() { under_way_ = false; }
 
-  /// What is to be told of it as long as it is under way, and after: what was not as it should be.
+  /// Says what is to be told of it as long as it is under way, and after: what was not as it should
+  /// be.
   std::string describe() const;
   const std::string& note() const { return history_.note; }
 

@@ -13,7 +13,7 @@ namespace lipofill::server {
 
 using SessionReply = std::function<void(absl::StatusOr<SessionView>)>;
 
-/// What a client asks of a session.
+/// A command is what a client asks of a session.
 struct SessionCommand {
   const char* what;                      ///< as refusals name it
   std::vector<SimulationState> allowed;  ///< where it fits

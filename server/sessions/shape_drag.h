@@ -24,7 +24,7 @@ struct FoundTrial {
   uint64_t superseded = 0;  ///< requests of the drag that another took the place of, so far
 };
 
-/// What somebody wants to see: the settled shape of a plan with other volumes.
+/// A request is what somebody wants to see: the settled shape of a plan with other volumes.
 struct ShapeRequest {
   std::string plan;  ///< equal for equal plans on equal models
   std::function<absl::StatusOr<std::unique_ptr<simulation::TrialShape>>()> make;

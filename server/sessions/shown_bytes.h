@@ -7,8 +7,8 @@
 
 namespace lipofill::server {
 
-/// What frames take in memory now that viewers have yet to read: those that wait in a viewer's
-/// queue, and their encodings for the wire, which viewers share.
+/// Tells what frames take in memory now that viewers have yet to read: those that wait in a
+/// viewer's queue, and their encodings for the wire, which viewers share.
 uint64_t shown_bytes();
 
 /// Ends or refuses a stream of frames where those take more than they may: RESOURCE_EXHAUSTED.

@@ -42,8 +42,8 @@ struct EndOfStream {
 };
 using ToSend = std::variant<std::monostate, TopologyToSend, FrameToSend, EndOfStream>;
 
-/// What one watcher has yet to be sent: meshes, frames, the end. The session puts frames in and
-/// never waits; the stream takes them out as fast as its client reads.
+/// A viewer holds what one watcher has yet to be sent: meshes, frames, the end. The session puts
+/// frames in and never waits; the stream takes them out as fast as its client reads.
 ///
 /// A queue that overflows (FrameQueue) ends the stream. Where the client acknowledges frames, none
 /// but the last is taken while `max_unacknowledged` are on their way: what is taken after an

@@ -14,9 +14,9 @@
 
 namespace lipofill::server {
 
-// How commands to simulations are answered, whether or not they have a session.
+// This file says how commands to simulations are answered, whether or not they have a session.
 
-/// What a command has a session do, which then calls `reply`.
+/// An act is what a command has a session do, which then calls `reply`.
 using SessionAct = std::function<void(Session& session, RequestKey key, Session::Reply reply)>;
 
 /// Answers with the session's view and the record it belongs to.

@@ -23,7 +23,7 @@ absl::Status file_error(const std::string& what, int error_number);
 /// Checked by tests/unit/server/store/checkpoint_files_test.cc.
 absl::Status write_durably(const std::filesystem::path& path, std::string_view bytes);
 
-/// Where write_durably() writes before it puts a file into its place.
+/// Tells where write_durably() writes before it puts a file into its place.
 std::filesystem::path draft_of(const std::filesystem::path& path);
 
 /// Waits until what was written to a file, or which entries a directory has, is on the medium.

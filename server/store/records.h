@@ -122,7 +122,7 @@ struct SeriesChunk {
   std::string rows_message;
 };
 
-/// What tells one store from another, and an older state of it from a newer one.
+/// An identity is what tells one store from another, and an older state of it from a newer one.
 struct StoreIdentity {
   std::string id;       ///< 32 hexadecimal digits
   uint64_t starts = 0;  ///< how often it was opened to be served

@@ -19,7 +19,7 @@ std::string to_text(const StoreIdentity& identity) {
   return absl::StrCat(identity.id, " ", identity.starts, "\n");
 }
 
-/// What the directory says; none where it does not say anything.
+/// Reads what the directory says; none where it does not say anything.
 absl::StatusOr<std::optional<StoreIdentity>> read_identity(const fs::path& path) {
   const auto text = read_whole_file(path, kMaxIdentityBytes);
   if (absl::IsNotFound(text.status())) return std::nullopt;
@@ -43,7 +43,7 @@ fs::path any_file_in(const fs::path& root) {
   return {};
 }
 
-/// What a directory holds of a store besides the database; empty where that is nothing.
+/// Tells what a directory holds of a store besides the database; empty where that is nothing.
 std::string other_parts(const DataDirectory& data) {
   std::error_code error;
   if (fs::exists(data.identity(), error)) return data.identity().string();

@@ -6,8 +6,8 @@
 
 namespace lipofill::server {
 
-/// How fat is to be laid, in SI. INVALID_ARGUMENT with field violations named as in the message.
-/// Checked by tests/integration/service/proposal_test.cc.
+/// Reads how fat is to be laid, in SI. INVALID_ARGUMENT with field violations named as in the
+/// message. Checked by tests/integration/service/proposal_test.cc.
 absl::StatusOr<planning::DeliverySettings> to_delivery_settings(const v1::PlanDeliveryRequest& request);
 
 /// An injection list. Its plan is that of the request with the injections of the list.

@@ -134,7 +134,7 @@ std::vector<forecast::UncertainInput> read_inputs(const v1::ForecastSpec& spec, 
   return inputs;
 }
 
-/// What a figure is called, its unit, and how many SI units that is.
+/// A unit says what a figure is called, its unit, and how many SI units that is.
 struct FigureUnit {
   const char* name;
   const char* unit;

@@ -6,8 +6,8 @@
 
 namespace lipofill::server {
 
-/// What to propose, in SI. INVALID_ARGUMENT with field violations below "plan", "bounds", "zones",
-/// "spread" and of the other fields of the message. Checked by
+/// Reads what to propose, in SI. INVALID_ARGUMENT with field violations below "plan", "bounds",
+/// "zones", "spread" and of the other fields of the message. Checked by
 /// tests/integration/service/proposal_test.cc.
 absl::StatusOr<planning::ProposalRequest> to_proposal_request(const v1::ProposalSpec& spec);
 

@@ -10,7 +10,7 @@
 
 namespace lipofill::server {
 
-/// What FindShape asks for, but for the plan. Field violations named as in FindShapeRequest.
+/// Reads what FindShape asks for, but for the plan. Field violations named as in FindShapeRequest.
 /// Checked by tests/integration/service/shape_test.cc.
 absl::StatusOr<simulation::TrialVolumes> to_trial_volumes(const v1::FindShapeRequest& request);
 

@@ -68,7 +68,7 @@ v1::Registration to_registration(const planning::Registration& registration) {
   return message;
 }
 
-/// How the mirrored face lies on the face: what a registration says of it.
+/// Tells how the mirrored face lies on the face: what a registration says of it.
 v1::Registration to_mirror_registration(const planning::SymmetryPlane& plane) {
   v1::Registration message;
   message.set_start("landmarks");

@@ -43,13 +43,13 @@ std::string line_of(DcmItem* data_set, const DcmTagKey& tag) {
   return text;
 }
 
-/// What tells patients apart. Only compared, never shown.
+/// Tells patients apart. The value is only compared, never shown.
 size_t patient_of(DcmItem* data_set) {
   return std::hash<std::string>()(text_of(data_set, DCM_PatientID) + "\n" + text_of(data_set, DCM_PatientName) + "\n" +
                                   text_of(data_set, DCM_PatientBirthDate));
 }
 
-/// What keeps the pixels from being one number each.
+/// Finds what keeps the pixels from being one number each.
 std::string find_pixel_problem(DcmItem* data_set) {
   const int64_t samples = whole_number_of(data_set, DCM_SamplesPerPixel, 1);
   if (samples != 1) return absl::StrCat("has ", samples, " samples a pixel, a picture in colour, where 1 is read");
@@ -105,7 +105,7 @@ std::string take_rescale(const FrameFields& fields, DicomFrame* frame) {
   return frame->slope == 0.0 ? "has RescaleSlope 0, which makes all pixels equal" : "";
 }
 
-/// What all images of a file share.
+/// Takes what all images of a file share.
 DicomFrame take_common(DcmItem* data_set, const std::filesystem::path& file) {
   DicomFrame frame;
   frame.file = file;
@@ -128,7 +128,8 @@ DicomFrame take_common(DcmItem* data_set, const std::filesystem::path& file) {
   return frame;
 }
 
-/// Whether the file can hold as many pixels as its header says, before memory is taken for them.
+/// Tells whether the file can hold as many pixels as its header says, before memory is taken for
+/// them.
 std::string find_length_problem(DcmDataset* data_set, const DicomFrame& frame, int64_t count) {
   DcmElement* pixels = nullptr;
   if (data_set->findAndGetElement(DCM_PixelData, pixels).bad() || pixels == nullptr) return {};

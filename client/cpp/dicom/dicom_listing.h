@@ -26,7 +26,7 @@ struct DicomSeries {
   std::string label() const;
 };
 
-/// What a source holds.
+/// The listing is what a source holds.
 struct DicomListing {
   std::vector<DicomSeries> series;  ///< by number, then UID
   size_t patients = 0;

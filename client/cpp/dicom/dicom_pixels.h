@@ -11,7 +11,7 @@
 
 namespace lipofill::client {
 
-/// How the pixels of an image are stored.
+/// The format says how the pixels of an image are stored.
 struct PixelFormat {
   int bits_allocated = 0;
   int bits_stored = 0;

@@ -34,7 +34,7 @@ bool begins_as(const std::filesystem::path& file, size_t offset, std::string_vie
   return std::string_view(head.data() + offset, magic.size()) == magic;
 }
 
-/// What one zip may still unpack to.
+/// The allowance is what one zip may still unpack to.
 class Allowance {
  public:
   explicit Allowance(const std::filesystem::path& zip) : zip_(zip) {

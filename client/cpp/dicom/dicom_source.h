@@ -21,7 +21,8 @@ class DicomSource {
   /// Files that may be DICOM, in the order of their names.
   const std::vector<std::filesystem::path>& files() const { return files_; }
 
-  /// Whether `path` is to be read as DICOM: a folder, a zip, .dcm, or a file that begins as DICOM.
+  /// Tells whether `path` is to be read as DICOM: a folder, a zip, .dcm, or a file that begins as
+  /// DICOM.
   static bool is_dicom(const std::filesystem::path& path);
 
   /// Bytes that a zip may unpack to. Slices of a CT shrink to a half or, of much air, a tenth.

@@ -17,7 +17,7 @@
 namespace lipofill::client {
 namespace {
 
-/// What the voxels of a series are kept as.
+/// The plan says what the voxels of a series are kept as.
 struct VoxelPlan {
   int vtk_type = VTK_FLOAT;
   bool rescaled = false;  ///< slices have rescales of their own, which are applied at once

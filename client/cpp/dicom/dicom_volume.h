@@ -24,7 +24,7 @@ struct DicomVolume {
   std::array<double, 3> spacing_mm{};
 };
 
-/// What a folder, a zip or a file of DICOM holds. INVALID_ARGUMENT for what cannot be read.
+/// Lists what a folder, a zip or a file of DICOM holds. INVALID_ARGUMENT for what cannot be read.
 absl::StatusOr<DicomListing> list_dicom(const std::filesystem::path& path);
 
 /// Reads one series of a folder, a zip or a file of several frames. The voxels keep their type

@@ -34,7 +34,7 @@ int vtk_type_of(int64_t datatype) {
   return found == types.end() ? 0 : found->second;
 }
 
-/// How a file is packed, by its first bytes.
+/// Tells how a file is packed, by its first bytes.
 VoxelEncoding packing_of(const std::filesystem::path& file) {
   std::array<char, 3> magic{};
   std::ifstream(file, std::ios::binary).read(magic.data(), magic.size());

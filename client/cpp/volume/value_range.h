@@ -22,7 +22,8 @@ struct ValueRange {
 /// Two passes over the voxels. Checked by tests/unit/client/volume_kinds_test.cc.
 ValueRange find_value_range(const Volume& volume);
 
-/// What is wrong with an isovalue that gives no surface, what values there are, and one to try.
+/// Says what is wrong with an isovalue that gives no surface, what values there are, and one to
+/// try.
 std::string explain_no_surface(const Volume& volume, double isovalue);
 
 }  // namespace lipofill::client

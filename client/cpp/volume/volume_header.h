@@ -43,7 +43,7 @@ inline constexpr uint64_t kMaxVolumeBytes = uint64_t{2} << 30;
 /// tests/unit/client/volume_test.cc and volume_kinds_test.cc.
 absl::StatusOr<VolumeHeader> read_volume_header(const std::filesystem::path& file);
 
-/// Whether read_volume_header knows the ending of a file's name.
+/// Tells whether read_volume_header knows the ending of a file's name.
 bool is_volume_name(const std::filesystem::path& file);
 
 // One format each; the voxels themselves are checked by read_volume_header.

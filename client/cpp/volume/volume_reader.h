@@ -17,8 +17,9 @@ namespace lipofill::client {
 struct Volume {
   vtkSmartPointer<vtkImageData> voxels;
   Affine index_to_mm{};
-  /// Where slices are not spaced evenly: the millimetres of voxel (0, 0, k) of each. Between two
-  /// slices a point goes straight from one to the other. Empty: index_to_mm says it all.
+  /// Where slices are not spaced evenly, these are the millimetres of voxel (0, 0, k) of each.
+  /// Between two slices a point goes straight from one to the other. Empty: index_to_mm says it
+  /// all.
   std::vector<std::array<double, 3>> slice_origins;
   double slope = 1.0;  ///< value = slope * voxel + intercept
   double intercept = 0.0;

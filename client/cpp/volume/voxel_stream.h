@@ -18,8 +18,8 @@ enum class VoxelEncoding {
   kText,   ///< numbers with blanks between them
 };
 
-/// Where a volume's voxels lie: in one file or, slice by slice, in several, each with an equal
-/// share of the bytes.
+/// The stream says where a volume's voxels lie: in one file or, slice by slice, in several, each
+/// with an equal share of the bytes.
 struct VoxelStream {
   std::vector<std::filesystem::path> files;
   VoxelEncoding encoding = VoxelEncoding::kRaw;

@@ -12,6 +12,8 @@
 
 namespace lipofill::exporting {
 
+struct DeckContent;
+
 /// The tissue of a simulation under its films' present pressure as an Abaqus/CalculiX input deck,
 /// for a second opinion by another solver (`ccx tissue`). Units of the deck: mm, N, MPa, tonne.
 ///
@@ -54,9 +56,8 @@ class CalculixDeck {
   size_t memory_bytes() const;
 
  private:
-  struct Content;
-  explicit CalculixDeck(std::unique_ptr<Content> content);
-  std::unique_ptr<Content> content_;
+  explicit CalculixDeck(std::unique_ptr<DeckContent> content);
+  std::unique_ptr<DeckContent> content_;
   size_t section_ = 0;  ///< next to be read
   size_t line_ = 0;     ///< counts the lines of that section; its head is line 0
 };

@@ -77,6 +77,15 @@ absl::Status TissueSystem::check_every_cell_can_open(const std::vector<plan::Fil
   return absl::OkStatus();
 }
 
+void TissueSystem::set_rest(SimulationState& state) const {
+  state.positions = rest_positions();
+  state.velocities.setZero(3, state.positions.cols());
+  for (Eigen::Matrix3Xd& earlier : state.earlier_velocities) earlier = state.velocities;
+  state.spring_is_intact.setOnes(n_ligament_springs());
+  state.factored_positions = state.positions;
+  state.factored_springs = state.spring_is_intact;
+}
+
 int TissueSystem::n_ligament_springs() const {
   if (setup_.ligaments.empty()) return 0;
   return setup_.ligaments.back().first_spring + setup_.ligaments.back().n_springs;

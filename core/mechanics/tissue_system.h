@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "core/coupling/gap_system.h"
 #include "core/mechanics/film_cells.h"
+#include "core/mechanics/simulation_state.h"
 #include "core/mechanics/step_cost.h"
 #include "core/mechanics/tissue_setup.h"
 
@@ -52,6 +53,8 @@ class TissueSystem {
   const std::vector<std::string>& gap_keys() const { return gap_keys_; }
   const Eigen::Matrix3Xd& rest_positions() const { return setup_.tissue.mesh().rest_positions; }
   int n_ligament_springs() const;
+  /// Sets what a state says of the tissue to its rest.
+  void set_rest(SimulationState& state) const;
   /// A force that is round-off beside those that hold the tissue together [N].
   double least_force() const { return least_force_; }
 

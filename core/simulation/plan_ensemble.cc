@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <limits>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -11,11 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/coupling/algebra_threads.h"
 #include "core/coupling/gap_volume.h"
-#include "core/geometry/hex_quality.h"
-#include "core/model/thicker_model.h"
-#include "core/plan/plan_placement.h"
-#include "core/simulation/direct_shape.h"
-#include "core/step/coupled_step.h"
+#include "core/simulation/ensemble_ground.h"
 
 namespace lipofill::simulation {
 namespace {
@@ -27,93 +22,6 @@ using Eigen::VectorXd;
 constexpr size_t kBatch = 16;
 /// Memory that the workers' equations may take together [B].
 constexpr uint64_t kMemoryBound = uint64_t{3} << 29;
-/// A hexahedron with less is folded, or about to be (geometry/hex_quality.h).
-constexpr double kLeastJacobian = 0.02;
-
-/// The plan's equations, at rest, and the ensemble beside one of its shapes.
-struct Ground {
-  std::vector<plan::FilmLayout> films;
-  std::unique_ptr<step::CoupledStep> stepper;
-  mechanics::SimulationState rest;
-  std::unique_ptr<DirectShape> direct;
-  std::unique_ptr<equilibrium::Ensemble> ensemble;
-};
-
-/// Places a plan and makes its equations. Errors as TrialShape::create.
-absl::Status make_ground(const model::FaceModel& model, const plan::SimulationSpec& spec, Ground& ground,
-                         plan::InjectionSchedule& schedule) {
-  plan::PlacedPlan placed;
-  if (const absl::Status status = plan::place_plan(model, spec, nullptr, placed); !status.ok()) return status;
-  ground.films = std::move(placed.films);
-  schedule = std::move(placed.schedule);
-  auto stepper = step::CoupledStep::create(model, ground.films, spec);
-  if (!stepper.ok()) return stepper.status();
-  ground.stepper = *std::move(stepper);
-  ground.rest = ground.stepper->rest_state();
-  if (const absl::Status open = ground.stepper->open_to_initial_thickness(ground.rest); !open.ok()) return open;
-  // When a run of the plan would end does not matter to a shape at rest.
-  plan::SimulationSpec at_rest = spec;
-  at_rest.settle_skin_speed = std::max(at_rest.settle_skin_speed, std::numeric_limits<double>::min());
-  at_rest.end = std::numeric_limits<double>::infinity();
-  const auto hindrance =
-      DirectShape::find_hindrance(model, ground.films, at_rest, schedule, ground.rest, *ground.stepper, false);
-  if (hindrance) {
-    return absl::FailedPreconditionError(absl::StrCat(
-        "the settled shape of this plan cannot be found at once, which a forecast needs: ", hindrance->text()));
-  }
-  auto direct = DirectShape::create(model, ground.films, spec, *ground.stepper, ground.rest);
-  if (!direct.ok()) return direct.status();
-  ground.direct = *std::move(direct);
-  return absl::OkStatus();
-}
-
-/// Tissue whose layers are thicker or thinner than the model's, with all that a shape of it needs.
-struct OtherTissue {
-  std::shared_ptr<const model::FaceModel> model;
-  mechanics::StepCost cost;
-  std::unique_ptr<mechanics::TissueSystem> system;
-  std::unique_ptr<mechanics::FilmGeometry> geometry;
-  std::unique_ptr<equilibrium::Equilibrium> equilibrium;
-};
-
-absl::StatusOr<std::unique_ptr<OtherTissue>> make_tissue(const Ground& ground, const model::FaceModel& model,
-                                                         const plan::SimulationSpec& spec, const VectorXd& thickness) {
-  auto other = std::make_unique<OtherTissue>();
-  other->model = model::with_thickness(model, thickness);
-  const geometry::WorstHexahedron worst = geometry::find_worst_hexahedron(other->model->geometry.grid);
-  if (worst.scaled_jacobian < kLeastJacobian) {
-    return absl::FailedPreconditionError("layers of that thickness fold where the face is curved");
-  }
-  const mechanics::FilmCells& cells = ground.stepper->cells();
-  auto system = mechanics::TissueSystem::create(*other->model, ground.films, cells, spec, other->cost);
-  if (!system.ok()) return system.status();
-  other->system = *std::move(system);
-  other->geometry =
-      std::make_unique<mechanics::FilmGeometry>(other->model->geometry.grid, ground.films, cells, other->system.get());
-  auto equilibrium = equilibrium::Equilibrium::create(*other->model, ground.films, cells, *other->system,
-                                                      *other->geometry, {spec.gravity, spec.fat_density}, other->cost);
-  if (!equilibrium.ok()) return equilibrium.status();
-  other->equilibrium = *std::move(equilibrium);
-  return other;
-}
-
-/// Fat in a cell that is injected into pools, of each of the plan's injections [m3] (n_pools).
-std::vector<VectorXd> find_injected(const Ground& ground, const model::FaceModel& model,
-                                    const plan::SimulationSpec& spec, const plan::InjectionSchedule& schedule) {
-  std::vector<VectorXd> injected;
-  const mechanics::FilmCells& cells = ground.stepper->cells();
-  for (const plan::InjectionSpec& injection : spec.injections) {
-    const auto placed = schedule.place(model, ground.films, injection, 0.0);
-    VectorXd all = VectorXd::Zero(cells.n()), on_tissue;
-    for (size_t k = 0; placed.ok() && k < placed->cells.size(); ++k) {
-      all[cells.offset[static_cast<size_t>(placed->film)] + placed->cells[k]] += injection.volume * placed->shares[k];
-    }
-    cells.gather_tissue_part(all, on_tissue);
-    injected.push_back(ground.direct->equilibrium().pools().sum(on_tissue));
-  }
-  return injected;
-}
-
 }  // namespace
 
 /// One thread's share of the ensemble.

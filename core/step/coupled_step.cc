@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/solid/hex_quality.h"
 #include "core/step/initial_opening.h"
+#include "core/step/step_memory.h"
 
 namespace lipofill::step {
 namespace {
@@ -27,14 +28,6 @@ constexpr int kPromptIterations = 2;
 constexpr double kGapTolerance = 2e-5;
 
 constexpr const char* kNotDefinite = "the tissue's stiffness is not positive definite";
-
-/// Memory of the factor with what making it takes, of matrices with their scatter maps, and of the
-/// vectors of steps, states and frames. Measured: 22 MB a simulation of jaw_angle, reckoned 24; 150
-/// MB at four times its size, reckoned 124.
-constexpr uint64_t kBytesAFactorValue = 8;
-constexpr uint64_t kBytesAValue = 24;
-constexpr uint64_t kBytesADof = 600;
-constexpr uint64_t kBytesACell = 4000;
 
 }  // namespace
 
@@ -60,14 +53,7 @@ absl::StatusOr<std::unique_ptr<CoupledStep>> CoupledStep::create(const model::Fa
 
 SimulationState CoupledStep::rest_state() const {
   SimulationState state;
-  if (system_) {
-    state.positions = system_->rest_positions();
-    state.velocities.setZero(3, state.positions.cols());
-    for (Eigen::Matrix3Xd& earlier : state.earlier_velocities) earlier = state.velocities;
-    state.spring_is_intact.setOnes(system_->n_ligament_springs());
-    state.factored_positions = state.positions;
-    state.factored_springs = state.spring_is_intact;
-  }
+  if (system_) system_->set_rest(state);
   films_->set_rest(state);
   return state;
 }
@@ -79,14 +65,7 @@ absl::Status CoupledStep::open_to_initial_thickness(SimulationState& state) {
 }
 
 uint64_t CoupledStep::memory_bytes() const {
-  const auto n_cells = static_cast<uint64_t>(cells_.n());
-  if (factor_ == nullptr) return n_cells * kBytesACell;
-  const Eigen::SparseMatrix<double>& b = system_->gaps().derivative();
-  const uint64_t n_dense = factor_->has_compliance() ? static_cast<uint64_t>(b.rows()) : 0;
-  const auto n_values = static_cast<uint64_t>(system_->tissue().system_matrix().nonZeros() + b.nonZeros());
-  return kBytesAFactorValue * static_cast<uint64_t>(factor_->factor().analysis().n_values()) +
-         sizeof(double) * n_dense * n_dense + n_values * kBytesAValue + static_cast<uint64_t>(n_dofs()) * kBytesADof +
-         n_cells * kBytesACell;
+  return estimate_memory(cells_.n(), system_.get(), factor_.get());
 }
 
 void CoupledStep::try_step(const SimulationState& state, const std::vector<Eigen::VectorXd>& injected, double dt,

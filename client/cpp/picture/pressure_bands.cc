@@ -2,6 +2,7 @@
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
+#include <vtkDataArray.h>
 #include <vtkFloatArray.h>
 #include <vtkIdList.h>
 #include <vtkNew.h>
@@ -11,20 +12,27 @@
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "client/cpp/picture/colours.h"
 
 namespace lipofill::client {
 namespace {
 
-constexpr int kCuts = 6;  // each side of a triangle is cut so often
+constexpr int kCuts = 6;    // each side of a triangle is cut so often
+constexpr int kRounds = 2;  // of smoothing
+
+/// The fat under a point of the surface.
+struct Fat {
+  double wet = 0.0;              ///< 1 where there is fat below, else 0; between them near the edge
+  double pressure_of_wet = 0.0;  ///< pressure times wet
+};
 
 /// A point of the surface with what is interpolated between points.
 struct Corner {
   std::array<double, 3> point{};
   std::array<double, 3> normal{};
-  double wet = 0.0;              ///< 1 where there is fat below, else 0
-  double pressure_of_wet = 0.0;  ///< pressure times wet
+  Fat fat;
 };
 
 Corner mix(const std::array<Corner, 3>& corners, double a, double b) {
@@ -35,14 +43,14 @@ Corner mix(const std::array<Corner, 3>& corners, double a, double b) {
       mixed.point[i] += weights[k] * corners[k].point[i];
       mixed.normal[i] += weights[k] * corners[k].normal[i];
     }
-    mixed.wet += weights[k] * corners[k].wet;
-    mixed.pressure_of_wet += weights[k] * corners[k].pressure_of_wet;
+    mixed.fat.wet += weights[k] * corners[k].fat.wet;
+    mixed.fat.pressure_of_wet += weights[k] * corners[k].fat.pressure_of_wet;
   }
   return mixed;
 }
 
-const Colour& colour_of(const Corner& centre) {
-  return centre.wet > 0.5 ? pressure_band_of(centre.pressure_of_wet / centre.wet).colour : kNothing;
+const Colour& colour_of(const Fat& fat) {
+  return fat.wet > 0.5 ? pressure_band_of(fat.pressure_of_wet / fat.wet).colour : kNothing;
 }
 
 /// Triangles with points of their own.
@@ -54,7 +62,7 @@ class BandedSurface {
   }
 
   void add(const std::array<Corner, 3>& corners) {
-    const Colour& colour = colour_of(mix(corners, 1.0 / 3.0, 1.0 / 3.0));
+    const Colour& colour = colour_of(mix(corners, 1.0 / 3.0, 1.0 / 3.0).fat);
     std::array<vtkIdType, 3> ids{};
     for (size_t k = 0; k < 3; ++k) {
       ids[k] = points_->InsertNextPoint(corners[k].point.data());
@@ -92,27 +100,70 @@ class BandedSurface {
   vtkNew<vtkUnsignedCharArray> colours_;
 };
 
-Corner corner_of(vtkPolyData* surface, vtkIdType id) {
-  vtkPointData* fields = surface->GetPointData();
-  Corner corner;
-  surface->GetPoint(id, corner.point.data());
-  fields->GetNormals()->GetTuple(id, corner.normal.data());
-  corner.wet = fields->GetArray(kThickness)->GetComponent(id, 0) > 0.0 ? 1.0 : 0.0;
-  corner.pressure_of_wet = corner.wet > 0.0 ? fields->GetArray(kPressure)->GetComponent(id, 0) : 0.0;
-  return corner;
+std::vector<Fat> find_fat(vtkPolyData* surface) {
+  vtkDataArray* thickness = surface->GetPointData()->GetArray(kThickness);
+  vtkDataArray* pressure = surface->GetPointData()->GetArray(kPressure);
+  std::vector<Fat> fat(static_cast<size_t>(surface->GetNumberOfPoints()));
+  for (size_t point = 0; point < fat.size(); ++point) {
+    const auto id = static_cast<vtkIdType>(point);
+    if (thickness->GetComponent(id, 0) > 0.0) fat[point] = {1.0, pressure->GetComponent(id, 0)};
+  }
+  return fat;
+}
+
+/// Mixes what lies under each point with what lies under those around it: half of it is the mean
+/// over the cells that meet there. The edge of the fat, where half is wet, no longer follows the
+/// sides of triangles.
+void smooth(vtkPolyData* surface, std::vector<Fat>& fat) {
+  struct Around {
+    Fat sum;
+    int n = 0;
+  };
+  std::vector<Around> around(fat.size());
+  vtkNew<vtkIdList> ids;
+  for (vtkIdType cell = 0; cell < surface->GetNumberOfCells(); ++cell) {
+    surface->GetCellPoints(cell, ids);
+    Fat sum;
+    const int n = static_cast<int>(ids->GetNumberOfIds());
+    for (int k = 0; k < n; ++k) {
+      const Fat& corner = fat[static_cast<size_t>(ids->GetId(k))];
+      sum.wet += corner.wet;
+      sum.pressure_of_wet += corner.pressure_of_wet;
+    }
+    for (int k = 0; k < n; ++k) {
+      Around& at = around[static_cast<size_t>(ids->GetId(k))];
+      at.sum.wet += sum.wet;
+      at.sum.pressure_of_wet += sum.pressure_of_wet;
+      at.n += n;
+    }
+  }
+  for (size_t point = 0; point < fat.size(); ++point) {
+    const Around& at = around[point];
+    if (at.n == 0) continue;
+    fat[point].wet = 0.5 * (fat[point].wet + at.sum.wet / at.n);
+    fat[point].pressure_of_wet = 0.5 * (fat[point].pressure_of_wet + at.sum.pressure_of_wet / at.n);
+  }
 }
 
 }  // namespace
 
 Surface in_pressure_bands(vtkPolyData* surface) {
+  std::vector<Fat> fat = find_fat(surface);
+  for (int round = 0; round < kRounds; ++round) smooth(surface, fat);
+  const auto corner = [&](vtkIdType id) {
+    Corner made;
+    surface->GetPoint(id, made.point.data());
+    surface->GetPointData()->GetNormals()->GetTuple(id, made.normal.data());
+    made.fat = fat[static_cast<size_t>(id)];
+    return made;
+  };
   BandedSurface banded;
   vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; cell < surface->GetNumberOfCells(); ++cell) {
     surface->GetCellPoints(cell, ids);
     for (vtkIdType k = 2; k < ids->GetNumberOfIds(); ++k) {
-      const std::array<Corner, 3> corners = {corner_of(surface, ids->GetId(0)), corner_of(surface, ids->GetId(k - 1)),
-                                             corner_of(surface, ids->GetId(k))};
-      const bool has_fat = corners[0].wet + corners[1].wet + corners[2].wet > 0.0;
+      const std::array<Corner, 3> corners = {corner(ids->GetId(0)), corner(ids->GetId(k - 1)), corner(ids->GetId(k))};
+      const bool has_fat = corners[0].fat.wet + corners[1].fat.wet + corners[2].fat.wet > 0.0;
       has_fat ? banded.add_cut(corners) : banded.add(corners);
     }
   }

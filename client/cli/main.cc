@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/cli/application.h"
 #include "client/cli/forecast_command.h"
+#include "client/cli/records_command.h"
 #include "client/cpp/errors.h"
 #include "client/cpp/nearest_name.h"
 #include "client/cpp/result_text.h"
@@ -43,6 +44,7 @@ void add_all_commands(CLI::App& root, Application& application) {
   add_shape_command(root, application);
   add_target_command(root, application);
   add_render_command(root, application);
+  add_records_commands(root, application);
   add_operation_commands(root, application);
   add_health_command(root, application);
 }

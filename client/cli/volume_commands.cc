@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/application.h"
+#include "client/cpp/dicom/dicom_choice.h"
 #include "client/cpp/dicom/dicom_volume.h"
 #include "client/cpp/volume/invesalius.h"
 #include "client/cpp/volume/skin_extraction.h"
@@ -77,6 +78,7 @@ void print_series(const DicomSeries& series) {
 absl::StatusOr<ExitCode> list_dicom_series(const Application& application, const Options& options) {
   const auto listing = list_dicom(options.volume);
   if (!listing.ok()) return listing.status();
+  if (auto status = check_has_images(options.volume, *listing); !status.ok()) return status;
   if (application.json) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
     for (const DicomSeries& series : listing->series) all.push_back(describe_series(series));

@@ -26,15 +26,6 @@ std::string labels_of(const std::vector<DicomSeries>& series) {
   return absl::StrJoin(labels, ", ");
 }
 
-absl::Status refuse_empty(const std::filesystem::path& source, const DicomListing& listing) {
-  std::string what = "holds no DICOM image: ";
-  absl::StrAppend(&what, listing.other_files, " files are no DICOM (empty, encrypted, or of another kind)");
-  if (listing.without_image > 0) absl::StrAppend(&what, ", ", listing.without_image, " hold no image");
-  if (listing.unreadable_files > 0)
-    absl::StrAppend(&what, ", ", listing.unreadable_files, " are cut short, the first is ", listing.first_unreadable);
-  return bad_volume(source, what + "; name the folder or zip that holds the images of a CT or MR");
-}
-
 /// Larger is better: a CT before an MR before others, axial before others, many voxels before few.
 std::tuple<bool, bool, bool, uint64_t> rank_of(const DicomSeries& series) {
   return {series.modality == "CT", series.modality == "MR", series.stack.orientation == "axial", series.voxels()};
@@ -62,9 +53,19 @@ absl::StatusOr<DicomSeries> choose_default(const std::filesystem::path& source, 
 
 }  // namespace
 
+absl::Status check_has_images(const std::filesystem::path& source, const DicomListing& listing) {
+  if (!listing.series.empty()) return absl::OkStatus();
+  std::string what = "holds no DICOM image: ";
+  absl::StrAppend(&what, listing.other_files, " files are no DICOM (empty, encrypted, or of another kind)");
+  if (listing.without_image > 0) absl::StrAppend(&what, ", ", listing.without_image, " hold no image");
+  if (listing.unreadable_files > 0)
+    absl::StrAppend(&what, ", ", listing.unreadable_files, " are cut short, the first is ", listing.first_unreadable);
+  return bad_volume(source, what + "; name the folder or zip that holds the images of a CT or MR");
+}
+
 absl::StatusOr<DicomSeries> choose_series(const std::filesystem::path& source, const DicomListing& listing,
                                           const std::string& wanted) {
-  if (listing.series.empty()) return refuse_empty(source, listing);
+  if (auto status = check_has_images(source, listing); !status.ok()) return status;
   if (wanted.empty()) {
     auto series = choose_default(source, listing);
     // A larger series may have been passed over for what is wrong with it.

@@ -8,6 +8,10 @@
 
 namespace lipofill::client {
 
+/// INVALID_ARGUMENT, with what the files are and the next step, where a source holds no image.
+/// Checked by tests/integration/cli/dicom_test.cc.
+absl::Status check_has_images(const std::filesystem::path& source, const DicomListing& listing);
+
 /// The series to read. `wanted` is a SeriesNumber or a SeriesInstanceUID; empty, it is the largest
 /// axial CT, else the largest axial MR, else the largest of any. INVALID_ARGUMENT, with the series
 /// there are and the next step, for none, for several patients without a wanted series, or for a

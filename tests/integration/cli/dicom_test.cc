@@ -64,6 +64,10 @@ TEST_F(CliDicomTest, BadInputSaysWhatToDo) {
   for (const int k : {15, 16}) std::filesystem::remove(folder_ / "ct" / absl::StrFormat("IM%04d", (k * 7) % 32));
   EXPECT_THAT(failure_of("lipofill scan extract ct --out bad.ply"), HasSubstr("--bridge-gaps"));
   answer_of("lipofill scan extract ct --bridge-gaps --isovalue -500 --out skin.ply --json");
+  std::filesystem::create_directories(folder_ / "plain");
+  write("plain/notes.txt", "no DICOM");
+  EXPECT_THAT(failure_of("lipofill scan series plain"), HasSubstr("holds no DICOM image: 1 files are no DICOM"));
+  EXPECT_THAT(failure_of("lipofill scan series plain --json"), HasSubstr("INVALID_ARGUMENT"));
   write("bad.zip", "PK\x03\x04 and no more");
   EXPECT_THAT(failure_of("lipofill scan extract bad.zip --out bad.ply"), HasSubstr("bad.zip"));
 }

@@ -11,6 +11,7 @@
 #include "client/cli/application.h"
 #include "client/cli/forecast_command.h"
 #include "client/cli/records_command.h"
+#include "client/cli/scene_command.h"
 #include "client/cpp/errors.h"
 #include "client/cpp/nearest_name.h"
 #include "client/cpp/result_text.h"
@@ -45,6 +46,7 @@ void add_all_commands(CLI::App& root, Application& application) {
   add_target_command(root, application);
   add_render_command(root, application);
   add_records_commands(root, application);
+  add_scene_command(root, application);
   add_operation_commands(root, application);
   add_health_command(root, application);
 }

@@ -3,6 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/application.h"
+#include "client/cli/convert_command.h"
 #include "client/cli/describe.h"
 #include "client/cli/listing.h"
 #include "client/cli/options.h"
@@ -92,6 +93,7 @@ void add_scan_commands(CLI::App& root, Application& application) {
   add_scan_check_command(*group, application);
   add_scan_landmarks_command(*group, application);
   add_volume_commands(*group, application);
+  add_convert_command(*group, application);
 }
 
 }  // namespace lipofill::client

@@ -7,7 +7,6 @@
 #include "client/cli/application.h"
 #include "client/cpp/dicom/dicom_choice.h"
 #include "client/cpp/dicom/dicom_volume.h"
-#include "client/cpp/volume/invesalius.h"
 #include "client/cpp/volume/skin_extraction.h"
 
 namespace lipofill::client {
@@ -140,26 +139,6 @@ absl::StatusOr<ExitCode> extract(const Application& application, const Options& 
   return ExitCode::kOk;
 }
 
-absl::StatusOr<ExitCode> convert(const Application& application, const Options& options) {
-  const auto volume = convert_invesalius(options.volume, options.out);
-  if (!volume.ok()) return volume.status();
-  const auto& size = volume->size;
-  const auto& spacing = volume->spacing_mm;
-  if (application.json) {
-    std::cout << nlohmann::ordered_json{{"file", options.out},
-                                        {"size", size},
-                                        {"spacing_mm", spacing},
-                                        {"frame", "LPS"}}
-                     .dump(2)
-              << "\n";
-  } else {
-    std::cout << absl::StrFormat(
-        "%s: %d x %d x %d voxels of %.4g x %.4g x %.4g mm, axes LPS (x to the left, y to the back, z up)\n",
-        options.out, size[0], size[1], size[2], spacing[0], spacing[1], spacing[2]);
-  }
-  return ExitCode::kOk;
-}
-
 }  // namespace
 
 void add_volume_commands(CLI::App& scan, Application& application) {
@@ -204,13 +183,6 @@ void add_volume_commands(CLI::App& scan, Application& application) {
                     [&application, options] { return list_dicom_series(application, *options); })
       ->add_option("source", options->volume, "a folder, a zip or a file of DICOM")
       ->required();
-  command =
-      add_local_command(scan, application, "convert",
-                        "The volume of an InVesalius 3 project as a MetaImage in LPS axes, the head not mirrored.",
-                        "  lipofill scan convert Cranium.inv3 --out ct.mha\n",
-                        [&application, options] { return convert(application, *options); });
-  command->add_option("project", options->volume, ".inv3")->required();
-  command->add_option("--out", options->out, ".mha")->required();
 }
 
 }  // namespace lipofill::client

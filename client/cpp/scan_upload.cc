@@ -99,6 +99,11 @@ absl::StatusOr<v1::ScanFormat> scan_format_of(const std::filesystem::path& file)
   if (extension == ".obj") return v1::OBJ;
   if (extension == ".ply") return v1::PLY;
   if (extension == ".stl") return v1::STL;
+  if (extension == ".glb" || extension == ".gltf") {
+    return absl::InvalidArgumentError(absl::StrCat("scan file ", file.string(),
+                                                   ": glTF is converted first: lipofill scan convert ", file.string(),
+                                                   " --out face.ply"));
+  }
   return absl::InvalidArgumentError(
       absl::StrCat("scan file ", file.string(), ": '", extension, "' is not one of .obj, .ply, .stl"));
 }

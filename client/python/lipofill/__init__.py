@@ -44,7 +44,7 @@ from lipofill.runs import Run
 from lipofill.series import Series
 from lipofill.shapes import Shape
 from lipofill.simulations import Simulation
-from lipofill.volumes import DicomSeries, Skin, extract_skin, list_series
+from lipofill.volumes import DicomSeries, Skin, convert_surface, extract_skin, list_series
 from lipofill.watching import Watch
 
 __version__ = "0.1.0"
@@ -85,6 +85,7 @@ __all__ = [
     "box",
     "by_landmarks",
     "constant",
+    "convert_surface",
     "disc",
     "extract_skin",
     "list_series",

@@ -111,6 +111,8 @@ class Scans:
             The file cannot be read.
         """
         path = Path(file)
+        if path.suffix.lower() in (".glb", ".gltf"):
+            raise InvalidArgumentError(f"scan file {path}: glTF is converted first: lipofill.convert_surface")
         if path.suffix.lower() not in _FORMATS:
             raise InvalidArgumentError(f"scan file {path}: '{path.suffix}' is not one of {', '.join(_FORMATS)}")
         scan = self.announce(patient, path, unit=unit)

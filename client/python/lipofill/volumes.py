@@ -119,6 +119,23 @@ def list_series(source: PathLike) -> List[DicomSeries]:
     return found
 
 
+def convert_surface(surface: PathLike, out: PathLike, *, unit: str = "mm") -> Tuple[str, ...]:
+    """A .glb or .gltf as a .ply in mm, with the colours of its vertices.
+
+    The format has metres, and so is a surface smaller than 5 units understood; a larger one is in
+    `unit`, "mm", "cm" or "m".
+
+    Returns
+    -------
+    tuple of str
+        What was passed over, and how the unit was understood.
+
+    Raises InvalidArgumentError for what cannot be read.
+    """
+    answer = _answer_of(["convert", os.fspath(surface), "--out", os.fspath(out), "--unit", unit])
+    return tuple(answer["remarks"])
+
+
 def extract_skin(
     volume: PathLike,
     out: PathLike,

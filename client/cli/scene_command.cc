@@ -1,0 +1,98 @@
+#include "client/cli/scene_command.h"
+
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "client/cli/run_record.h"
+#include "client/cpp/json_file.h"
+#include "client/cpp/scene/glb_scene.h"
+#include "client/cpp/scene/slicer_scene.h"
+
+namespace lipofill::client {
+namespace {
+
+constexpr char kDescription[] =
+    "A result as a scene for other programs. RESULT is a folder of lipofill run or lipofill export; a run leaves every "
+    "still in it, an export the last alone.\n"
+    "FILE.glb (glTF 2.0, for viewers, Blender, slides and web pages) has the skin in colours and its motion as an "
+    "animation. FILE.mrml (3D Slicer) has the skin before and as planned, with lift_mm and pressure_pa on it, and the "
+    "landmarks given, all in LPS; its other files lie beside it.";
+
+struct Options {
+  std::string result;
+  std::string out;
+  std::string landmarks;
+  std::string colour = "lift";
+  size_t stills = 30;
+  double play_s = 0.0;
+};
+
+absl::Status write_glb(const RunRecord& record, const SkinMotion& motion, const Options& options) {
+  GlbOptions glb;
+  glb.name = record.plan;
+  glb.by_pressure = options.colour == "pressure";
+  glb.play_s = options.play_s;
+  glb.up = record.up;
+  return write_text_file(options.out, glb_of(motion, glb));
+}
+
+absl::Status write_mrml(const SkinMotion& motion, const Options& options) {
+  std::optional<Landmarks> landmarks;
+  if (!options.landmarks.empty()) {
+    auto loaded = load_landmarks(options.landmarks, v1::MILLIMETRE);
+    if (!loaded.ok()) return loaded.status();
+    landmarks = *std::move(loaded);
+  }
+  return write_slicer_scene(options.out, motion, landmarks);
+}
+
+absl::StatusOr<ExitCode> write(const Application& application, const Options& options) {
+  const bool is_glb = absl::EndsWithIgnoreCase(options.out, ".glb");
+  if (!is_glb && !absl::EndsWithIgnoreCase(options.out, ".mrml"))
+    return absl::InvalidArgumentError(absl::StrCat("--out ", options.out, " must end in .glb or .mrml"));
+  const auto record = read_run_record(options.result);
+  if (!record.ok()) return record.status();
+  const auto motion = read_skin_motion(options.result, options.stills);
+  if (!motion.ok()) return motion.status();
+  const absl::Status written = is_glb ? write_glb(*record, *motion, options) : write_mrml(*motion, options);
+  if (!written.ok()) return written;
+  if (application.json) {
+    std::cout << nlohmann::ordered_json{{"file", options.out},
+                                        {"points", motion->rest_mm.cols()},
+                                        {"triangles", motion->triangles.size()},
+                                        {"stills", motion->stills.size()}}
+                     .dump(2)
+              << "\n";
+    return ExitCode::kOk;
+  }
+  return application.done(absl::StrFormat("%s: %d points, %d triangles, %d stills", options.out, motion->rest_mm.cols(),
+                                          motion->triangles.size(), motion->stills.size()));
+}
+
+}  // namespace
+
+void add_scene_command(CLI::App& root, Application& application) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = add_local_command(root, application, "scene", kDescription,
+                                        "  lipofill scene result --out face.glb\n"
+                                        "  lipofill scene result --out face.glb --colour pressure --play-s 6\n"
+                                        "  lipofill scene result --out face.mrml --landmarks face.mrk.json\n",
+                                        [&application, options] { return write(application, *options); });
+  command->add_option("result", options->result, "folder of a run or an export")->required();
+  command->add_option("--out", options->out, "file to write")->required()->type_name("FILE.glb|FILE.mrml");
+  command->add_option("--colour", options->colour, "what colours a GLB: lift (default) or pressure")
+      ->check(CLI::IsMember({"lift", "pressure"}).description(""));
+  command->add_option("--stills", options->stills, "at most so many stills of the motion; default 30")
+      ->check(CLI::Range(1, 1000).description(""))
+      ->type_name("NUMBER");
+  command->add_option("--play-s", options->play_s, "play the motion in so many seconds; default: as long as it took")
+      ->check(CLI::Range(0.01, 3600.0).description(""))
+      ->type_name("SECONDS");
+  command->add_option("--landmarks", options->landmarks, "landmarks to put into a scene of Slicer, mm and LPS");
+}
+
+}  // namespace lipofill::client

@@ -1,0 +1,88 @@
+"""Scenes of a real run: Khronos' validator finds nothing wrong with a GLB, and VTK reads it where
+the skin is.
+"""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+from typing import Any, Dict
+
+import pytest
+
+from conftest import PLANS, SOURCE
+
+VALIDATOR = SOURCE / "build" / "api-tools" / "node_modules" / "gltf-validator"
+VALIDATE = """
+const validator = require(process.argv[1]);
+const bytes = new Uint8Array(require("fs").readFileSync(process.argv[2]));
+validator.validateBytes(bytes).then((report) => console.log(JSON.stringify(report)));
+"""
+
+
+def run(*arguments: Any) -> Dict[str, Any]:
+    command = [os.environ["LIPOFILL"], *map(str, arguments), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=250)
+    assert done.returncode == 0, (command, done.stdout, done.stderr)
+    answer: Dict[str, Any] = json.loads(done.stdout)
+    return answer
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    folder = tmp_path_factory.mktemp("scene") / "result"
+    plan = json.loads((PLANS / "jaw_angle.json").read_text())
+    for part in ("file", "landmarks_file"):
+        plan["scan"][part] = str(PLANS / plan["scan"][part])
+    plan["simulation"]["time"]["goal"] = "SETTLED_SHAPE"
+    (folder.parent / "plan.json").write_text(json.dumps(plan))
+    run("run", folder.parent / "plan.json", "--out", folder, "--spawn")
+    return folder
+
+
+@pytest.mark.skipif(not VALIDATOR.exists() or shutil.which("node") is None, reason="gltf-validator is not installed")
+@pytest.mark.parametrize("colour", ["lift", "pressure"])
+def test_a_glb_is_what_khronos_says(result: pathlib.Path, tmp_path: pathlib.Path, colour: str) -> None:
+    made = run("scene", result, "--out", tmp_path / "face.glb", "--colour", colour, "--play-s", 4)
+    command = ["node", "-e", VALIDATE, str(VALIDATOR), str(tmp_path / "face.glb")]
+    report = json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+    assert report["issues"]["numErrors"] == 0 and report["issues"]["numWarnings"] == 0, report["issues"]
+    assert report["info"]["hasMorphTargets"] and report["info"]["animationCount"] == (1 if made["stills"] > 1 else 0)
+    assert report["info"]["totalTriangleCount"] == made["triangles"]
+
+
+def test_a_glb_becomes_a_scan_again(result: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    made = run("scene", result, "--out", tmp_path / "face.glb")
+    scan = run("scan", "convert", tmp_path / "face.glb", "--out", tmp_path / "face.ply")
+    assert scan["triangles"] == made["triangles"] and scan["coloured"] and scan["mm_per_unit"] == 1000
+    assert "morph targets are passed over" in " ".join(scan["remarks"])
+    vtk = pytest.importorskip("vtk")
+    read = vtk.vtkPLYReader()
+    read.SetFileName(str(tmp_path / "face.ply"))
+    read.Update()
+    original = vtk.vtkOBJReader()
+    original.SetFileName(str(SOURCE / "client" / "examples" / "faces" / "half_face.obj"))
+    original.Update()
+    # The plan's up is y, which glTF has too: the face lies where it lay.
+    assert read.GetOutput().GetBounds() == pytest.approx(original.GetOutput().GetBounds(), abs=1e-3)
+    assert read.GetOutput().GetPointData().GetScalars().GetName() == "RGB"
+
+
+def test_a_scene_of_slicer_names_files_that_are_there(result: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    landmarks = SOURCE / "client" / "examples" / "faces" / "half_face.landmarks.json"
+    run("scene", result, "--out", tmp_path / "face.mrml", "--landmarks", landmarks)
+    scene = (tmp_path / "face.mrml").read_text()
+    for name in ("face_before.vtp", "face_planned.vtp", "face_landmarks.mrk.json"):
+        assert f'fileName="{name}" coordinateSystem="LPS"' in scene and (tmp_path / name).stat().st_size > 500
+
+
+def test_wrong_input_says_what_to_do(result: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    for arguments, message in (
+        ((result, "--out", tmp_path / "face.stl"), "must end in .glb or .mrml"),
+        ((tmp_path, "--out", tmp_path / "face.glb"), "is not a folder that lipofill run has written"),
+        ((result, "--out", tmp_path / "no" / "face.glb"), "cannot write"),
+    ):
+        command = [os.environ["LIPOFILL"], "scene", *map(str, arguments)]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 2 and message in done.stderr, done.stderr

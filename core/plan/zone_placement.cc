@@ -204,7 +204,7 @@ void feather_zones(const model::FaceModel& model, const FilmSpec& spec, PlacedZo
     const double cut = measure_cut_feather(model.geometry.grid, spec.extent, placed.distances[z], widths[z]);
     if (cut < kToldLength) continue;
     remarks.push_back(absl::StrFormat(
-        "Fat of zone %s would feather %.0f mm beyond its outline; the film's extent cuts that short along %.0f mm.",
+        "Fat of zone %s would feather %.0f mm beyond its outline; the film ends before that along %.0f mm.",
         spec.zones[z].name, widths[z] / kMetresPerMillimetre, cut / kMetresPerMillimetre));
   }
 }

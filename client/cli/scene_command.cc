@@ -11,6 +11,7 @@
 #include "client/cpp/json_file.h"
 #include "client/cpp/scene/glb_scene.h"
 #include "client/cpp/scene/slicer_scene.h"
+#include "client/cpp/scene/tissue_fields.h"
 
 namespace lipofill::client {
 namespace {
@@ -20,12 +21,17 @@ constexpr char kDescription[] =
     "still in it, an export the last alone.\n"
     "FILE.glb (glTF 2.0, for viewers, Blender, slides and web pages) has the skin in colours and its motion as an "
     "animation. FILE.mrml (3D Slicer) has the skin before and as planned, with lift_mm and pressure_pa on it, and the "
-    "landmarks given, all in LPS; its other files lie beside it.";
+    "landmarks given, all in LPS; its other files lie beside it. FILE.vtu (ParaView) has the tissue, with layer, "
+    "strain and "
+    "stress at the middle of each hexahedron; --deck names the tissue's deck, of lipofill export --deck, which knows "
+    "the "
+    "layers.";
 
 struct Options {
   std::string result;
   std::string out;
   std::string landmarks;
+  std::string deck;
   std::string colour = "lift";
   size_t stills = 30;
   double play_s = 0.0;
@@ -50,10 +56,18 @@ absl::Status write_mrml(const SkinMotion& motion, const Options& options) {
   return write_slicer_scene(options.out, motion, landmarks);
 }
 
+absl::StatusOr<ExitCode> write_tissue(const Application& application, const Options& options) {
+  if (options.deck.empty())
+    return absl::InvalidArgumentError("a .vtu needs --deck FILE.inp, which lipofill export --deck writes");
+  if (auto status = write_tissue_fields(options.result, options.deck, options.out); !status.ok()) return status;
+  return application.done(absl::StrCat("wrote the tissue of ", options.result, " to ", options.out));
+}
+
 absl::StatusOr<ExitCode> write(const Application& application, const Options& options) {
+  if (absl::EndsWithIgnoreCase(options.out, ".vtu")) return write_tissue(application, options);
   const bool is_glb = absl::EndsWithIgnoreCase(options.out, ".glb");
   if (!is_glb && !absl::EndsWithIgnoreCase(options.out, ".mrml"))
-    return absl::InvalidArgumentError(absl::StrCat("--out ", options.out, " must end in .glb or .mrml"));
+    return absl::InvalidArgumentError(absl::StrCat("--out ", options.out, " must end in .glb, .mrml or .vtu"));
   const auto record = read_run_record(options.result);
   if (!record.ok()) return record.status();
   const auto motion = read_skin_motion(options.result, options.stills);
@@ -80,10 +94,11 @@ void add_scene_command(CLI::App& root, Application& application) {
   CLI::App* command = add_local_command(root, application, "scene", kDescription,
                                         "  lipofill scene result --out face.glb\n"
                                         "  lipofill scene result --out face.glb --colour pressure --play-s 6\n"
-                                        "  lipofill scene result --out face.mrml --landmarks face.mrk.json\n",
+                                        "  lipofill scene result --out face.mrml --landmarks face.mrk.json\n"
+                                        "  lipofill scene result --out tissue.vtu --deck tissue.inp\n",
                                         [&application, options] { return write(application, *options); });
   command->add_option("result", options->result, "folder of a run or an export")->required();
-  command->add_option("--out", options->out, "file to write")->required()->type_name("FILE.glb|FILE.mrml");
+  command->add_option("--out", options->out, "file to write")->required()->type_name("FILE.glb|FILE.mrml|FILE.vtu");
   command->add_option("--colour", options->colour, "what colours a GLB: lift (default) or pressure")
       ->check(CLI::IsMember({"lift", "pressure"}).description(""));
   command->add_option("--stills", options->stills, "at most so many stills of the motion; default 30")
@@ -93,6 +108,7 @@ void add_scene_command(CLI::App& root, Application& application) {
       ->check(CLI::Range(0.01, 3600.0).description(""))
       ->type_name("SECONDS");
   command->add_option("--landmarks", options->landmarks, "landmarks to put into a scene of Slicer, mm and LPS");
+  command->add_option("--deck", options->deck, "the tissue's deck, for a .vtu")->type_name("FILE.inp");
 }
 
 }  // namespace lipofill::client

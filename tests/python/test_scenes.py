@@ -11,6 +11,7 @@ from typing import Any, Dict
 
 import pytest
 
+import lipofill
 from conftest import PLANS, SOURCE
 
 VALIDATOR = SOURCE / "build" / "api-tools" / "node_modules" / "gltf-validator"
@@ -77,9 +78,36 @@ def test_a_scene_of_slicer_names_files_that_are_there(result: pathlib.Path, tmp_
         assert f'fileName="{name}" coordinateSystem="LPS"' in scene and (tmp_path / name).stat().st_size > 500
 
 
+def test_tissue_has_layers_strain_and_stress(result: pathlib.Path, tmp_path: pathlib.Path, connection: Any) -> None:
+    vtk = pytest.importorskip("vtk")
+    with connection.run(lipofill.Plan.load(PLANS / "jaw_angle.json").settle()) as simulated:
+        simulated.wait()
+        (tmp_path / "tissue.inp").write_bytes(simulated.tissue_deck())
+    command = [os.environ["LIPOFILL"], "scene", str(result), "--out", str(tmp_path / "tissue.vtu")]
+    subprocess.run([*command, "--deck", str(tmp_path / "tissue.inp")], check=True, capture_output=True)
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(tmp_path / "tissue.vtu"))
+    reader.Update()
+    fields = reader.GetOutput().GetCellData()
+    layers = [fields.GetArray("layer").GetValue(k) for k in range(reader.GetOutput().GetNumberOfCells())]
+    assert layers.count(1) == layers.count(2) == 40 * 31
+    assert 0.95 < fields.GetArray("volume_ratio").GetRange()[0] < fields.GetArray("volume_ratio").GetRange()[1] < 1.05
+    assert 0.05 < fields.GetArray("equivalent_strain").GetRange()[1] < 0.5
+    assert 1 < fields.GetArray("von_mises_stress_kpa").GetRange()[1] < 100
+
+
+def test_a_surface_is_converted_from_python(result: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    run("scene", result, "--out", tmp_path / "face.glb")
+    remarks = lipofill.convert_surface(tmp_path / "face.glb", tmp_path / "face.ply")
+    assert any("units of 1000 mm" in remark for remark in remarks) and (tmp_path / "face.ply").stat().st_size > 10_000
+    (tmp_path / "bad.glb").write_bytes(b"glTF and no more")
+    with pytest.raises(lipofill.InvalidArgumentError, match="bad.glb"):
+        lipofill.convert_surface(tmp_path / "bad.glb", tmp_path / "bad.ply")
+
+
 def test_wrong_input_says_what_to_do(result: pathlib.Path, tmp_path: pathlib.Path) -> None:
     for arguments, message in (
-        ((result, "--out", tmp_path / "face.stl"), "must end in .glb or .mrml"),
+        ((result, "--out", tmp_path / "face.stl"), "must end in .glb, .mrml or .vtu"),
         ((tmp_path, "--out", tmp_path / "face.glb"), "is not a folder that lipofill run has written"),
         ((result, "--out", tmp_path / "no" / "face.glb"), "cannot write"),
     ):

@@ -30,16 +30,12 @@ struct Options {
   v1::ScanUnit unit = v1::MILLIMETRE;
 };
 
-double mm_of(v1::ScanUnit unit) {
-  return unit == v1::METRE ? 1000.0 : unit == v1::CENTIMETRE ? 10.0 : 1.0;
-}
-
 absl::StatusOr<ExitCode> convert_gltf(const Application& application, const Options& options) {
   if (!absl::EndsWithIgnoreCase(options.out, ".ply"))
     return absl::InvalidArgumentError(absl::StrCat("--out ", options.out, " must end in .ply"));
   auto surface = read_gltf_surface(options.file);
   if (!surface.ok()) return surface.status();
-  const double mm = gltf_unit_mm(*surface, mm_of(options.unit));
+  const double mm = gltf_unit_mm(*surface, millimetres_of(options.unit));
   std::vector<std::string> remarks = surface->remarks;
   remarks.push_back(absl::StrFormat("its numbers are taken for units of %g mm", mm));
   if (auto status = write_text_file(options.out, ply_bytes(*surface, mm)); !status.ok()) return status;

@@ -7,9 +7,12 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "client/cli/options.h"
 #include "client/cli/run_record.h"
+#include "client/cli/units.h"
 #include "client/cpp/json_file.h"
 #include "client/cpp/scene/glb_scene.h"
+#include "client/cpp/scene/scan_colours.h"
 #include "client/cpp/scene/slicer_scene.h"
 #include "client/cpp/scene/tissue_fields.h"
 
@@ -32,6 +35,8 @@ struct Options {
   std::string out;
   std::string landmarks;
   std::string deck;
+  std::string scan;
+  v1::ScanUnit unit = v1::MILLIMETRE;
   std::string colour = "lift";
   size_t stills = 30;
   double play_s = 0.0;
@@ -43,6 +48,13 @@ absl::Status write_glb(const RunRecord& record, const SkinMotion& motion, const 
   glb.by_pressure = options.colour == "pressure";
   glb.play_s = options.play_s;
   glb.up = record.up;
+  if (!options.scan.empty()) {
+    const auto scan = read_scan_colours(options.scan, millimetres_of(options.unit));
+    if (!scan.ok()) return scan.status();
+    auto colours = find_nearest_colours(*scan, motion.rest_mm);
+    if (!colours.ok()) return colours.status();
+    glb.colours = *std::move(colours);
+  }
   return write_text_file(options.out, glb_of(motion, glb));
 }
 
@@ -94,6 +106,7 @@ void add_scene_command(CLI::App& root, Application& application) {
   CLI::App* command = add_local_command(root, application, "scene", kDescription,
                                         "  lipofill scene result --out face.glb\n"
                                         "  lipofill scene result --out face.glb --colour pressure --play-s 6\n"
+                                        "  lipofill scene result --out face.glb --scan face.ply\n"
                                         "  lipofill scene result --out face.mrml --landmarks face.mrk.json\n"
                                         "  lipofill scene result --out tissue.vtu --deck tissue.inp\n",
                                         [&application, options] { return write(application, *options); });
@@ -101,6 +114,11 @@ void add_scene_command(CLI::App& root, Application& application) {
   command->add_option("--out", options->out, "file to write")->required()->type_name("FILE.glb|FILE.mrml|FILE.vtu");
   command->add_option("--colour", options->colour, "what colours a GLB: lift (default) or pressure")
       ->check(CLI::IsMember({"lift", "pressure"}).description(""));
+  command->add_option("--scan", options->scan,
+                      "colour a GLB by the vertices of this scan, the one the plan was made on: .ply, .obj, .glb or "
+                      ".gltf");
+  command->add_option("--unit", options->unit, "unit of that scan: mm (default), cm or m")
+      ->transform(choice_of(kUnitNames));
   command->add_option("--stills", options->stills, "at most so many stills of the motion; default 30")
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("NUMBER");

@@ -70,6 +70,20 @@ def test_a_glb_becomes_a_scan_again(result: pathlib.Path, tmp_path: pathlib.Path
     assert read.GetOutput().GetPointData().GetScalars().GetName() == "RGB"
 
 
+def test_a_glb_keeps_the_colours_of_the_scan(result: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    face = (SOURCE / "client" / "examples" / "faces" / "half_face.obj").read_text().splitlines()
+    coloured = [line + " 1 0 0" if line.startswith("v ") else line for line in face]
+    (tmp_path / "face.obj").write_text("\n".join(coloured))
+    run("scene", result, "--out", tmp_path / "face.glb", "--scan", tmp_path / "face.obj")
+    run("scan", "convert", tmp_path / "face.glb", "--out", tmp_path / "face.ply")
+    vtk = pytest.importorskip("vtk")
+    reader = vtk.vtkPLYReader()
+    reader.SetFileName(str(tmp_path / "face.ply"))
+    reader.Update()
+    colours = reader.GetOutput().GetPointData().GetScalars()
+    assert {colours.GetTuple3(k) for k in range(colours.GetNumberOfTuples())} == {(255.0, 0.0, 0.0)}
+
+
 def test_a_scene_of_slicer_names_files_that_are_there(result: pathlib.Path, tmp_path: pathlib.Path) -> None:
     landmarks = SOURCE / "client" / "examples" / "faces" / "half_face.landmarks.json"
     run("scene", result, "--out", tmp_path / "face.mrml", "--landmarks", landmarks)

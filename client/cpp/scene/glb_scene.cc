@@ -25,6 +25,13 @@ float linear_of(double shown) {
   return static_cast<float>(shown <= 0.04045 ? shown / 12.92 : std::pow((shown + 0.055) / 1.055, 2.4));
 }
 
+/// Colours as screens show them, as glTF has them.
+Eigen::Matrix4Xf linear_colours(const Eigen::Matrix3Xf& shown) {
+  Eigen::Matrix4Xf values = Eigen::Matrix4Xf::Ones(4, shown.cols());
+  values.topRows<3>() = shown.unaryExpr([](float value) { return linear_of(value); });
+  return values;
+}
+
 Eigen::Matrix4Xf colours_of(const SkinMotion& motion, bool by_pressure) {
   const Eigen::VectorXf lift = motion.stills.back().displacement_mm.colwise().norm();
   const auto colours = displacement_colours(lift.maxCoeff());
@@ -99,7 +106,8 @@ std::string glb_of(const SkinMotion& motion, const GlbOptions& options) {
   }
   Json attributes = {{"POSITION", file.add_vectors(rest)},
                      {"NORMAL", file.add_vectors(normals_of(motion, rest + motion.stills.back().displacement_mm))},
-                     {"COLOR_0", file.add_colours(colours_of(motion, options.by_pressure))}};
+                     {"COLOR_0", file.add_colours(options.colours ? linear_colours(*options.colours)
+                                                                  : colours_of(motion, options.by_pressure))}};
   Json mesh = {{"name", "skin"},
                {"primitives",
                 {{{"attributes", attributes},
@@ -113,7 +121,9 @@ std::string glb_of(const SkinMotion& motion, const GlbOptions& options) {
                   {"generator", absl::StrCat("Lipofill ", LIPOFILL_VERSION)},
                   {"extras",
                    {{"plan", options.name},
-                    {"colours", options.by_pressure ? "pressure_pa in bands" : "lift_mm"},
+                    {"colours", options.colours       ? "scan"
+                                : options.by_pressure ? "pressure_pa in bands"
+                                                      : "lift_mm"},
                     {"notice", kNotAMedicalDevice}}}}},
                 {"scene", 0},
                 {"scenes", {{{"nodes", {0}}}}},

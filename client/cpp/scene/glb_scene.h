@@ -10,9 +10,11 @@ namespace lipofill::client {
 
 /// What a GLB shows.
 struct GlbOptions {
-  std::string name = {};                         ///< of the plan
-  bool by_pressure = false;                      ///< colours are bands of pressure, else the lift
-  double play_s = 0.0;                           ///< the motion in so many seconds; 0: as long as it takes
+  std::string name = {};     ///< of the plan
+  bool by_pressure = false;  ///< colours are bands of pressure, else the lift
+  double play_s = 0.0;       ///< the motion in so many seconds; 0: as long as it takes
+  /// Colours of the points as screens show them, in place of those of lift or pressure.
+  std::optional<Eigen::Matrix3Xf> colours = {};
   std::optional<std::array<double, 3>> up = {};  ///< in the frame of the scan; none: z, as in LPS
 };
 

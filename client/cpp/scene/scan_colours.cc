@@ -1,0 +1,147 @@
+#include "client/cpp/scene/scan_colours.h"
+
+#include <vtkNew.h>
+#include <vtkPLYReader.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkStaticPointLocator.h>
+
+#include <algorithm>
+#include <fstream>
+#include <vector>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "client/cpp/gltf/gltf_surface.h"
+#include "client/cpp/io/vtk_messages.h"
+
+namespace lipofill::client {
+namespace {
+
+constexpr double kNearMm = 1.0;
+constexpr double kMostWithout = 0.05;
+/// Colour of a point without one.
+const Eigen::Vector3f kWithout(0.87F, 0.70F, 0.60F);
+
+absl::StatusOr<ColouredPoints> read_ply(const std::filesystem::path& file, double mm) {
+  const VtkMessages messages;
+  vtkNew<vtkPLYReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  vtkPolyData* const surface = reader->GetOutput();
+  vtkDataArray* colours = surface->GetPointData()->GetArray("RGB");
+  if (colours == nullptr) colours = surface->GetPointData()->GetArray("RGBA");
+  if (!messages.error().empty() || colours == nullptr || colours->GetNumberOfComponents() < 3)
+    return absl::InvalidArgumentError("has no red, green and blue of its vertices");
+  ColouredPoints found;
+  found.points_mm.resize(3, surface->GetNumberOfPoints());
+  found.colours.resize(3, surface->GetNumberOfPoints());
+  for (vtkIdType k = 0; k < surface->GetNumberOfPoints(); ++k) {
+    surface->GetPoint(k, found.points_mm.col(k).data());
+    for (int c = 0; c < 3; ++c) found.colours(c, k) = static_cast<float>(colours->GetComponent(k, c) / 255.0);
+  }
+  found.points_mm *= mm;
+  return found;
+}
+
+/// "v x y z r g b", from 0 to 1 or, as some programs write them, to 255.
+absl::StatusOr<ColouredPoints> read_obj(const std::filesystem::path& file, double mm) {
+  std::ifstream stream(file);
+  std::vector<std::array<double, 6>> vertices;
+  std::string line;
+  while (std::getline(stream, line)) {
+    const std::vector<std::string> words = absl::StrSplit(line, absl::ByAnyChar(" \t\r"), absl::SkipEmpty());
+    if (words.size() != 7 || words[0] != "v") continue;
+    std::array<double, 6> vertex{};
+    bool good = true;
+    for (size_t k = 0; k < vertex.size(); ++k) good = absl::SimpleAtod(words[k + 1], &vertex[k]) && good;
+    if (good) vertices.push_back(vertex);
+  }
+  if (vertices.empty()) return absl::InvalidArgumentError("has no colours behind its vertices (v x y z r g b)");
+  double most = 1.0;
+  for (const auto& vertex : vertices) most = std::max({most, vertex[3], vertex[4], vertex[5]});
+  const double scale = most > 1.0 ? 255.0 : 1.0;
+  ColouredPoints found;
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  found.points_mm.resize(3, count);
+  found.colours.resize(3, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto& vertex = vertices[static_cast<size_t>(k)];
+    for (int c = 0; c < 3; ++c) {
+      found.points_mm(c, k) = mm * vertex[static_cast<size_t>(c)];
+      found.colours(c, k) = static_cast<float>(vertex[static_cast<size_t>(c + 3)] / scale);
+    }
+  }
+  return found;
+}
+
+absl::StatusOr<ColouredPoints> read_gltf(const std::filesystem::path& file, double mm) {
+  const auto surface = read_gltf_surface(file);
+  if (!surface.ok()) return surface.status();
+  if (surface->colours.empty()) return absl::InvalidArgumentError("has no colours of its vertices (COLOR_0)");
+  const double unit = gltf_unit_mm(*surface, mm);
+  ColouredPoints found;
+  const auto count = static_cast<Eigen::Index>(surface->points.size());
+  found.points_mm.resize(3, count);
+  found.colours.resize(3, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    for (int c = 0; c < 3; ++c) {
+      found.points_mm(c, k) = unit * surface->points[static_cast<size_t>(k)][static_cast<size_t>(c)];
+      found.colours(c, k) =
+          static_cast<float>(surface->colours[static_cast<size_t>(k)][static_cast<size_t>(c)] / 255.0);
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+absl::StatusOr<ColouredPoints> read_scan_colours(const std::filesystem::path& file, double mm) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    return absl::InvalidArgumentError(absl::StrCat("scan file ", file.string(), " does not exist or is not a file"));
+  const std::string ending = absl::AsciiStrToLower(file.extension().string());
+  absl::StatusOr<ColouredPoints> found = absl::InvalidArgumentError("is not one of .ply, .obj, .glb, .gltf");
+  if (ending == ".ply") found = read_ply(file, mm);
+  if (ending == ".obj") found = read_obj(file, mm);
+  if (is_gltf_name(file)) found = read_gltf(file, mm);
+  if (!found.ok())
+    return absl::InvalidArgumentError(absl::StrCat("scan file ", file.string(), ": ", found.status().message()));
+  return found;
+}
+
+absl::StatusOr<Eigen::Matrix3Xf> find_nearest_colours(const ColouredPoints& scan, const Eigen::Matrix3Xd& points_mm) {
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(scan.points_mm.cols());
+  for (Eigen::Index k = 0; k < scan.points_mm.cols(); ++k) points->SetPoint(k, scan.points_mm.col(k).data());
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(points);
+  vtkNew<vtkStaticPointLocator> locator;
+  locator->SetDataSet(cloud);
+  locator->BuildLocator();
+  Eigen::Matrix3Xf colours(3, points_mm.cols());
+  Eigen::Index without = 0;
+  for (Eigen::Index k = 0; k < points_mm.cols(); ++k) {
+    double squared = 0.0;
+    const vtkIdType nearest = locator->FindClosestPointWithinRadius(kNearMm, points_mm.col(k).data(), squared);
+    if (nearest >= 0) {
+      colours.col(k) = scan.colours.col(nearest);
+    } else {
+      colours.col(k) = kWithout;
+      ++without;
+    }
+  }
+  if (static_cast<double>(without) > kMostWithout * static_cast<double>(points_mm.cols())) {
+    return absl::InvalidArgumentError(
+        absl::StrFormat("%d of %d points of the skin have no coloured point within %g mm: the colours are of another "
+                        "scan, or in another unit (--unit)",
+                        without, points_mm.cols(), kNearMm));
+  }
+  return colours;
+}
+
+}  // namespace lipofill::client

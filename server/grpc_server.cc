@@ -104,6 +104,7 @@ absl::StatusOr<std::unique_ptr<GrpcServer>> GrpcServer::start(const std::vector<
   builder.RegisterService(&self->services_.simulations);
   builder.RegisterService(&self->services_.frames);
   builder.RegisterService(&self->services_.planning);
+  builder.RegisterService(&self->services_.plans);
   builder.RegisterService(&self->services_.forecasts);
   self->server_ = builder.BuildAndStart();
   if (self->server_ == nullptr) return absl::InternalError("gRPC does not start; its own log says why");

@@ -20,6 +20,7 @@
 #include "server/ops/socket_claim.h"
 #include "server/patients/operation_service.h"
 #include "server/patients/patient_service.h"
+#include "server/patients/plan_service.h"
 #include "server/planning/forecast_service.h"
 #include "server/planning/planning_service.h"
 #include "server/simulations/simulation_service.h"
@@ -86,12 +87,14 @@ class GrpcServer {
           simulations(backend),
           frames(backend),
           planning(backend),
+          plans(backend),
           forecasts(backend) {}
     PatientService patients;
     OperationService operations;
     SimulationService simulations;
     FrameService frames;
     PlanningService planning;
+    PlanService plans;
     ForecastService forecasts;
   };
   Services services_;

@@ -65,6 +65,8 @@ void add_patient_commands(CLI::App& root, Application& application);
 void add_scan_commands(CLI::App& root, Application& application);
 void add_volume_commands(CLI::App& scan, Application& application);
 void add_model_commands(CLI::App& root, Application& application);
+/// These are added below the group of the plans.
+void add_saved_plan_commands(CLI::App& group, Application& application);
 /// These are added below the group of the simulations.
 void add_checkpoint_commands(CLI::App& group, Application& application);
 void add_simulation_commands(CLI::App& root, Application& application);

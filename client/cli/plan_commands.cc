@@ -72,7 +72,7 @@ absl::StatusOr<ExitCode> check(Application& application, const std::string& file
 }  // namespace
 
 void add_plan_commands(CLI::App& root, Application& application) {
-  CLI::App* group = add_group(root, "plan", "Plan files");
+  CLI::App* group = add_group(root, "plan", "Plans: files, and those that are kept with a patient");
   const auto file = std::make_shared<std::string>();
   const auto model = std::make_shared<std::string>();
   CLI::App* command = add_local_command(
@@ -85,6 +85,7 @@ void add_plan_commands(CLI::App& root, Application& application) {
   command->add_option("plan", *file, "PLAN.json")->required();
   command->add_option("--model", *model, "patients/ID/models/ID");
   add_connection_options(*command, application);
+  add_saved_plan_commands(*group, application);
 }
 
 }  // namespace lipofill::client

@@ -13,6 +13,9 @@ std::string scan_name(const std::string& patient, const std::string& scan) {
 std::string model_name(const std::string& patient, const std::string& model) {
   return absl::StrCat("patients/", patient, "/models/", model);
 }
+std::string plan_name(const std::string& patient, const std::string& plan) {
+  return absl::StrCat("patients/", patient, "/plans/", plan);
+}
 std::string simulation_name(const std::string& simulation) {
   return absl::StrCat("simulations/", simulation);
 }

@@ -38,7 +38,7 @@ CREATE TRIGGER $0_are_summed_anew AFTER UPDATE OF $1 ON $0
 
 }  // namespace
 
-const std::array<SummedTable, 10> kSummedTables = {{
+const std::array<SummedTable, 13> kSummedTables = {{
     {"patients", PATIENT_COLUMNS, "id", "'patients/' || CAST(id AS TEXT)"},
     {"patient_labels", LABEL_COLUMNS, "patient, key", OF_PATIENT "' (a label)'"},
     {"scans", SCAN_COLUMNS, "patient, id", OF_PATIENT "'/scans/' || CAST(id AS TEXT)"},
@@ -50,11 +50,16 @@ const std::array<SummedTable, 10> kSummedTables = {{
     {"requests", REQUEST_COLUMNS, "tenant, method, id", "CAST(name AS TEXT) || ' (the request that made it)'"},
     {"simulation_commands", COMMAND_COLUMNS, "simulation, number", OF_SIMULATION "' (its command ' || number || ')'"},
     {"checkpoints", CHECKPOINT_COLUMNS, "simulation, id", OF_SIMULATION "'/checkpoints/' || CAST(id AS TEXT)"},
+    {"plans", PLAN_COLUMNS, "patient, id", OF_PATIENT "'/plans/' || CAST(id AS TEXT)", 6},
+    {"plan_revisions", PLAN_REVISION_COLUMNS, "patient, plan, number",
+     OF_PATIENT "'/plans/' || CAST(plan AS TEXT) || ' (its revision ' || number || ')'", 6},
+    {"plan_runs", PLAN_RUN_COLUMNS, "simulation", OF_PATIENT "'/plans/' || CAST(plan AS TEXT) || ' (a run)'", 6},
 }};
 
-std::string make_row_sums() {
+std::string make_row_sums(int version) {
   std::string statements;
   for (const SummedTable& table : kSummedTables) {
+    if (table.since <= version) continue;
     absl::StrAppend(&statements,
                     absl::Substitute(kStatements, table.name, table.columns, with_prefix("NEW.", table.columns),
                                      with_prefix("OLD.", table.columns), is_new_row(table)));

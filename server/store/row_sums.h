@@ -22,6 +22,10 @@
   "simulation, id, kind, on_course, step, time_s, wall_s, last_command, size_bytes, sha256, state_hash, " \
   "create_time_us"
 
+#define PLAN_COLUMNS "patient, id, revision, scan, target, content, create_time_us, update_time_us"
+#define PLAN_REVISION_COLUMNS "patient, plan, number, content, changes, create_time_us"
+#define PLAN_RUN_COLUMNS "simulation, patient, plan, content_hash, create_time_us"
+
 /// An expression that is 1 for a row that is what was written, else 0.
 #define IS_WHOLE(table, columns) "sum = row_sum('" table "', " columns ")"
 
@@ -34,16 +38,17 @@ struct SummedTable {
   const char* columns;  ///< those that are summed, with ", " between them
   const char* key;      ///< the columns that tell its rows apart
   const char* title;    ///< an expression: the name of what a row is of
+  int since = 5;        ///< version of the schema from which on it is there and summed
 };
 
 /// Every table that keeps something of a user.
-extern const std::array<SummedTable, 10> kSummedTables;
+extern const std::array<SummedTable, 13> kSummedTables;
 
-/// The statements that give every table its sums: the column, the sums of the rows that are there,
-/// and the triggers that sum a row when it is written, and refuse to change one that is not what
-/// was written, so that damage is never summed anew. Checked by
-/// tests/unit/server/store/row_sums_test.cc.
-std::string make_row_sums();
+/// The statements that give every table which comes after a version of the schema its sums: the
+/// column, the sums of the rows that are there, and the triggers that sum a row when it is written,
+/// and refuse to change one that is not what was written, so that damage is never summed anew.
+/// Checked by tests/unit/server/store/row_sums_test.cc.
+std::string make_row_sums(int version);
 
 /// DATA_LOSS for the record of a resource that is not what was written.
 absl::Status damaged_record(const std::string& name);

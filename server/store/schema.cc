@@ -103,6 +103,23 @@ CREATE TRIGGER recorded_checkpoints AFTER INSERT ON checkpoints BEGIN
     WHERE path = CAST('checkpoints/' || CAST(NEW.simulation AS TEXT) || '/' || CAST(NEW.id AS TEXT) AS BLOB); END;
 )";
 
+/// 6: patients have plans, with what they were and what was run from them.
+constexpr char kFromVersion5[] = R"(
+CREATE TABLE plans (
+  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, revision INTEGER NOT NULL,
+  scan BLOB NOT NULL, target BLOB NOT NULL, content BLOB NOT NULL, create_time_us INTEGER NOT NULL,
+  update_time_us INTEGER NOT NULL, PRIMARY KEY (patient, id));
+CREATE TABLE plan_revisions (
+  patient BLOB NOT NULL, plan BLOB NOT NULL, number INTEGER NOT NULL, content BLOB NOT NULL, changes BLOB NOT NULL,
+  create_time_us INTEGER NOT NULL, PRIMARY KEY (patient, plan, number),
+  FOREIGN KEY (patient, plan) REFERENCES plans(patient, id) ON DELETE CASCADE);
+CREATE TABLE plan_runs (
+  simulation BLOB PRIMARY KEY REFERENCES simulations(id) ON DELETE CASCADE, patient BLOB NOT NULL,
+  plan BLOB NOT NULL, content_hash BLOB NOT NULL, create_time_us INTEGER NOT NULL,
+  FOREIGN KEY (patient, plan) REFERENCES plans(patient, id) ON DELETE CASCADE);
+CREATE INDEX plan_runs_by_plan ON plan_runs(patient, plan);
+)";
+
 absl::StatusOr<int64_t> read_pragma(Database& database, const char* sql) {
   Query query(database, sql);
   const int64_t value = query.next() ? query.integer(0) : 0;
@@ -135,7 +152,7 @@ absl::Status check_schema(Database& database, const std::string& path) {
     Query columns(database, absl::StrCat("SELECT ", table.columns, ", sum FROM ", table.name, " LIMIT 0").c_str());
     if (!columns.run().ok()) return damaged(path, std::string(columns.status().message()));
   }
-  const std::string expected = absl::StrCat(kFromVersion4, make_row_sums());
+  const std::string expected = absl::StrCat(kFromVersion4, make_row_sums(0));
   Query triggers(database, "SELECT name, sql FROM sqlite_master WHERE type = 'trigger'");
   size_t n = 0;
   for (; triggers.next(); ++n) {
@@ -179,8 +196,8 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   const auto tables = read_pragma(database, "SELECT count(*) FROM sqlite_master");
   if (!tables.ok()) return tables.status();
   if (*version == 0 && *tables == 0)
-    return change_schema(database,
-                         absl::StrCat(kSchema, kResumeTables, kTenantIndexes, kFromVersion4, make_row_sums()));
+    return change_schema(
+        database, absl::StrCat(kSchema, kResumeTables, kTenantIndexes, kFromVersion4, kFromVersion5, make_row_sums(0)));
   const auto application = read_pragma(database, "PRAGMA application_id");
   if (!application.ok()) return application.status();
   if (*application != kApplicationId) {
@@ -194,7 +211,8 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   if (*version < 2) changes += kFromVersion1;
   if (*version < 3) absl::StrAppend(&changes, kFromVersion2, kResumeTables);
   if (*version < 4) absl::StrAppend(&changes, kFromVersion3, kTenantIndexes);
-  if (*version < 5) absl::StrAppend(&changes, kFromVersion4, make_row_sums());
+  if (*version < 5) changes += kFromVersion4;
+  if (*version < 6) absl::StrAppend(&changes, kFromVersion5, make_row_sums(static_cast<int>(*version)));
   if (changes.empty()) return check_schema(database, path);
   return change_schema(database, changes);
 }

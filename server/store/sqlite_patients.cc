@@ -126,11 +126,13 @@ absl::Status SqliteStore::delete_patient(const std::string& id, bool force, cons
 absl::Status SqliteStore::check_empty(const std::string& patient) {
   Query count(
       *database_,
-      "SELECT (SELECT count(*) FROM scans WHERE patient = ?1), (SELECT count(*) FROM models WHERE patient = ?1)");
+      "SELECT (SELECT count(*) FROM scans WHERE patient = ?1), (SELECT count(*) FROM models WHERE patient = ?1), "
+      "(SELECT count(*) FROM plans WHERE patient = ?1)");
   if (!count.bind(patient).next()) return count.status();
-  if (count.integer(0) + count.integer(1) == 0) return absl::OkStatus();
+  if (count.integer(0) + count.integer(1) + count.integer(2) == 0) return absl::OkStatus();
   return absl::FailedPreconditionError(absl::StrCat(patient_name(patient), " has ", count.integer(0), " scans and ",
-                                                    count.integer(1), " models; delete them first, or force"));
+                                                    count.integer(1), " models and ", count.integer(2),
+                                                    " plans; delete them first, or force"));
 }
 
 }  // namespace lipofill::server

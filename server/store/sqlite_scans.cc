@@ -114,6 +114,11 @@ absl::Status SqliteStore::delete_scan(const std::string& patient, const std::str
       return absl::FailedPreconditionError(
           absl::StrCat(model_name(patient, count.text(0)), " was built from ", scan_name(patient, id)));
     }
+    Query plans(*database_, "SELECT id FROM plans WHERE patient = ? AND (scan = ? OR target = ?) ORDER BY id LIMIT 1");
+    if (plans.bind(patient, id, id).next()) {
+      return absl::FailedPreconditionError(
+          absl::StrCat(plan_name(patient, plans.text(0)), " is for ", scan_name(patient, id)));
+    }
     Query remove(*database_, "DELETE FROM scans WHERE patient = ? AND id = ?");
     const absl::Status removed = remove.bind(patient, id).run();
     if (removed.ok() && database_->changes() == 0) return no_scan(patient, id);

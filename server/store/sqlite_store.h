@@ -41,6 +41,21 @@ class SqliteStore : public Store {
   absl::StatusOr<std::vector<ModelRecord>> list_models(const std::string& patient, const Page& page) override;
   absl::Status delete_model(const std::string& patient, const std::string& id) override;
 
+  absl::StatusOr<PlanRecord> create_plan(const PlanRecord& plan, const RequestKey& request) override;
+  absl::StatusOr<PlanRecord> get_plan(const std::string& patient, const std::string& id) override;
+  absl::StatusOr<std::vector<PlanRecord>> list_plans(const Scope& scope, const std::string& patient, const Page& page,
+                                                     uint64_t most_bytes) override;
+  absl::StatusOr<PlanRecord> update_plan(const std::string& patient, const std::string& id,
+                                         const PlanChange& change) override;
+  absl::Status delete_plan(const std::string& patient, const std::string& id,
+                           const PlanCheck& check = nullptr) override;
+  absl::StatusOr<std::vector<PlanRevisionRecord>> list_plan_revisions(const std::string& patient,
+                                                                      const std::string& id) override;
+  absl::StatusOr<PlanRevisionRecord> get_plan_revision(const std::string& patient, const std::string& id,
+                                                       uint64_t number) override;
+  absl::Status add_plan_run(const std::string& patient, const std::string& id, const PlanRunRecord& run) override;
+  absl::StatusOr<std::vector<PlanRunRecord>> list_plan_runs(const std::string& patient, const std::string& id) override;
+
   absl::StatusOr<SimulationRecord> create_simulation(const SimulationRecord& simulation,
                                                      const RequestKey& request) override;
   absl::StatusOr<SimulationRecord> get_simulation(const std::string& id) override;
@@ -113,7 +128,7 @@ class SqliteStore : public Store {
   absl::Status write_patient(const PatientRecord& patient);
   absl::Status write_scan(const ScanRecord& scan);
   absl::Status write_model(const ModelRecord& model);
-  /// Returns OK unless it has scans or models.
+  /// Returns OK unless it has scans, models or plans.
   absl::Status check_empty(const std::string& patient);
   absl::Status write_simulation(const SimulationRecord& simulation);
   absl::Status write_command(const CommandRecord& command);

@@ -7,21 +7,20 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "server/store/plan_store.h"
 #include "server/store/records.h"
 
 namespace lipofill::server {
 
-/// Patients, scans (their records, not their bytes), models, simulations and their results, durable
-/// and transactional: every call either happens whole or not at all. All calls may come from any
-/// thread.
+/// Patients, scans (their records, not their bytes), models, plans, simulations and their results,
+/// durable and transactional: every call either happens whole or not at all. All calls may come
+/// from any thread.
 ///
 /// Errors: NOT_FOUND and ALREADY_EXISTS naming the resource, FAILED_PRECONDITION, INVALID_ARGUMENT
 /// for a request id that was used for another request, DATA_LOSS and UNAVAILABLE from the medium.
 /// Checked by tests/unit/server/store/store_test.cc.
-class Store {
+class Store : public PlanStore {
  public:
-  virtual ~Store() = default;
-
   /// Creates return the record now in the store: the one given, or the one an equal request made
   /// before.
   virtual absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) = 0;
@@ -32,8 +31,8 @@ class Store {
   /// between. What `change` refuses is not done.
   using PatientChange = std::function<absl::StatusOr<PatientRecord>(const PatientRecord& present)>;
   virtual absl::StatusOr<PatientRecord> update_patient(const std::string& id, const PatientChange& change) = 0;
-  /// Deletes a patient. FAILED_PRECONDITION while it has scans or models, unless `force` is given;
-  /// then they go too. `check`, if any, may refuse.
+  /// Deletes a patient. FAILED_PRECONDITION while it has scans, models or plans, unless `force` is
+  /// given; then they go too. `check`, if any, may refuse.
   using PatientCheck = std::function<absl::Status(const PatientRecord& present)>;
   virtual absl::Status delete_patient(const std::string& id, bool force, const PatientCheck& check = nullptr) = 0;
 
@@ -45,7 +44,7 @@ class Store {
   virtual absl::Status set_scan_received(const std::string& patient, const std::string& id, uint64_t bytes) = 0;
   virtual absl::Status complete_scan(const std::string& patient, const std::string& id,
                                      const std::string& report_message) = 0;
-  /// Deletes a scan. FAILED_PRECONDITION while a model was built from it.
+  /// Deletes a scan. FAILED_PRECONDITION while a model was built from it, or a plan names it.
   virtual absl::Status delete_scan(const std::string& patient, const std::string& id) = 0;
 
   virtual absl::StatusOr<ModelRecord> create_model(const ModelRecord& model, const RequestKey& request) = 0;

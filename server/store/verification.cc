@@ -2,6 +2,7 @@
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "server/store/kept_files.h"
 #include "server/store/row_sums.h"
 
@@ -32,8 +33,11 @@ absl::Status verify_structure(Database& database, const std::string& path, Verif
 
 absl::Status verify_table(Database& database, const SummedTable& table, Verification& verification,
                           const VerificationProgress& progress) {
-  const std::string sql = absl::StrCat("SELECT ", table.title, ", sum = row_sum('", table.name, "', ", table.columns,
-                                       ") FROM ", table.name, " ORDER BY ", table.key);
+  // A text has the sum of the same bytes, but nothing is written as text, and nothing finds one.
+  const std::string types = absl::StrReplaceAll(table.columns, {{", ", "), typeof("}});
+  const std::string sql =
+      absl::StrCat("SELECT ", table.title, ", sum = row_sum('", table.name, "', ", table.columns,
+                   ") AND 'text' NOT IN (typeof(", types, ")) FROM ", table.name, " ORDER BY ", table.key);
   Query row(database, sql.c_str());
   while (row.next()) {
     if (++verification.records % kProgressEvery == 0) progress(verification);
@@ -67,6 +71,7 @@ absl::Status verify_records(Database& database, const std::string& path, Verific
   if (!version.next()) return version.status();
   if (version.integer(0) < kFirstVersionWithSums) return absl::OkStatus();
   for (const SummedTable& table : kSummedTables) {
+    if (version.integer(0) < table.since) continue;
     if (absl::Status done = verify_table(database, table, verification, progress); !done.ok()) return done;
   }
   return absl::OkStatus();

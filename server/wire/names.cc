@@ -72,6 +72,9 @@ absl::StatusOr<PatientChild> parse_scan_name(const std::string& name, const std:
 absl::StatusOr<PatientChild> parse_model_name(const std::string& name, const std::string& field) {
   return parse_child("models", name, field);
 }
+absl::StatusOr<PatientChild> parse_plan_name(const std::string& name, const std::string& field) {
+  return parse_child("plans", name, field);
+}
 absl::StatusOr<std::string> parse_simulation_name(const std::string& name, const std::string& field) {
   return parse_single("simulations", name, field);
 }

@@ -23,6 +23,7 @@ struct CheckpointParts {
 absl::StatusOr<std::string> parse_patient_name(const std::string& name, const std::string& field);
 absl::StatusOr<PatientChild> parse_scan_name(const std::string& name, const std::string& field);
 absl::StatusOr<PatientChild> parse_model_name(const std::string& name, const std::string& field);
+absl::StatusOr<PatientChild> parse_plan_name(const std::string& name, const std::string& field);
 absl::StatusOr<std::string> parse_simulation_name(const std::string& name, const std::string& field);
 absl::StatusOr<CheckpointParts> parse_checkpoint_name(const std::string& name, const std::string& field);
 absl::StatusOr<std::string> parse_operation_name(const std::string& name, const std::string& field);

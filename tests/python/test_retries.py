@@ -10,6 +10,7 @@ from lipofill.v1 import (
     frame_service_pb2,
     operation_service_pb2,
     patient_service_pb2,
+    plan_service_pb2,
     planning_service_pb2,
     simulation_service_pb2,
 )
@@ -19,12 +20,13 @@ FILES = (
     frame_service_pb2,
     operation_service_pb2,
     patient_service_pb2,
+    plan_service_pb2,
     planning_service_pb2,
     simulation_service_pb2,
 )
 # Streams have their own way to go on; a replacement made twice could undo another's between.
 STREAMS = {"UploadScan", "Watch", "DownloadModelMesh", "DownloadScanMesh", "ExportTissueDeck", "FindShape"}
-NOT_REPEATED = {*STREAMS, "UpdatePatient"}
+NOT_REPEATED = {*STREAMS, "UpdatePatient", "UpdatePlan"}
 
 
 def methods():

@@ -19,6 +19,7 @@ from lipofill.v1 import (
     frame_service_pb2_grpc,
     operation_service_pb2_grpc,
     patient_service_pb2_grpc,
+    plan_service_pb2_grpc,
     planning_service_pb2_grpc,
     simulation_service_pb2_grpc,
 )
@@ -65,6 +66,7 @@ class Channel:
         self._grpc = self._credentials.open_channel(self.server, _channel_options(self.server))
         self.patient_stub = patient_service_pb2_grpc.PatientServiceStub(self._grpc)
         self.forecast_stub = forecast_service_pb2_grpc.ForecastServiceStub(self._grpc)
+        self.plan_stub = plan_service_pb2_grpc.PlanServiceStub(self._grpc)
         self.planning_stub = planning_service_pb2_grpc.PlanningServiceStub(self._grpc)
         self.simulation_stub = simulation_service_pb2_grpc.SimulationServiceStub(self._grpc)
         self.frame_stub = frame_service_pb2_grpc.FrameServiceStub(self._grpc)

@@ -15,6 +15,7 @@ from lipofill.progress import ProgressCallback
 from lipofill.proposals import Proposals
 from lipofill.retries import RetryPolicy
 from lipofill.runs import Collections, Run
+from lipofill.saved_plans import SavedPlans
 from lipofill.scans import Scans
 from lipofill.simulations import Simulations
 from lipofill.targets import Targets
@@ -42,9 +43,10 @@ class Connection(Channel):
 
     Attributes
     ----------
-    patients, scans, models, targets, proposals, forecasts, simulations, operations
+    patients, scans, models, plans, targets, proposals, forecasts, simulations, operations
         What the daemon holds.
-    patient_stub, simulation_stub, frame_stub, operation_stub, planning_stub, forecast_stub
+    patient_stub, plan_stub, simulation_stub, frame_stub, operation_stub, planning_stub,
+    forecast_stub
         The generated stubs, for ``call``.
     """
 
@@ -61,6 +63,7 @@ class Connection(Channel):
         self.scans = Scans(self)
         self.operations = Operations(self)
         self.models = Models(self, self.operations)
+        self.plans = SavedPlans(self)
         self.targets = Targets(self, self.operations)
         self.proposals = Proposals(self, self.operations)
         self.forecasts = Forecasts(self, self.operations)

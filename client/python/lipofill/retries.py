@@ -16,7 +16,7 @@ Request = TypeVar("Request")
 
 # Asking again changes nothing; ending or cancelling what is ended or cancelled neither.
 _REPEATABLE = re.compile(
-    r"((Get|List|Wait|Evaluate|Estimate|Check|Measure|Delete|Cancel|Acknowledge)[A-Z]\w*|PlanDelivery|ArrangeFace)Request"
+    r"((Get|List|Wait|Evaluate|Estimate|Check|Measure|Delete|Cancel|Acknowledge)[A-Z]\w*|PlanDelivery|ArrangeFace|AddPlanRun)Request"
 )
 
 

@@ -10,6 +10,7 @@
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
 #include "lipofill/v1/forecast_service.pb.h"
+#include "lipofill/v1/plan_service.pb.h"
 #include "lipofill/v1/planning_service.pb.h"
 
 namespace lipofill::testing {
@@ -21,6 +22,7 @@ using google::protobuf::Message;
 std::unique_ptr<Message> make_request(const std::string& method, const std::string& json) {
   v1::MakeTargetRequest::descriptor();  // no stub here makes the linker take the services' files
   v1::MakeForecastRequest::descriptor();
+  v1::CreatePlanRequest::descriptor();
   const std::string full = full_name(method);
   const size_t slash = full.rfind('/');
   const auto* service = DescriptorPool::generated_pool()->FindServiceByName(full.substr(1, slash - 1));

@@ -86,6 +86,9 @@ Possessions::Possessions(const Caller& owner, const std::string& tenant) {
   v1::Model made;
   built.response().UnpackTo(&made);
   model = made.name();
+  plan = expect_answer<v1::SavedPlan>(
+             owner.call_json("PlanService/CreatePlan", R"({"parent":")" + patient + R"(","planId":"q"})"))
+             .name();
   simulation =
       expect_answer<v1::Simulation>(owner.call_json("SimulationService/CreateSimulation",
                                                     R"({"simulationId":")" + tenant + R"(-x","spec":{"model":")" +

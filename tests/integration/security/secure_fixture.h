@@ -10,6 +10,7 @@
 #include "lipofill/v1/frame_service.grpc.pb.h"
 #include "lipofill/v1/operation_service.pb.h"
 #include "lipofill/v1/patient_service.pb.h"
+#include "lipofill/v1/plan_service.pb.h"
 #include "lipofill/v1/simulation_service.pb.h"
 #include "tests/integration/security/caller.h"
 #include "tests/integration/service/daemon_process.h"
@@ -42,8 +43,8 @@ class SecureTest : public ::testing::Test {
   std::shared_ptr<grpc::Channel> channel_;
 };
 
-/// Makes a patient with a scan, a model, a simulation and a checkpoint; all names begin with the
-/// tenant's.
+/// Makes a patient with a scan, a model, a plan, a simulation and a checkpoint; all names begin
+/// with the tenant's.
 class Possessions {
  public:
   explicit Possessions(const Caller& owner, const std::string& tenant);
@@ -52,6 +53,7 @@ class Possessions {
   std::string scan;
   std::string model;
   std::string operation;
+  std::string plan;
   std::string simulation;
   std::string checkpoint;
 };

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_replace.h"
 #include "google/rpc/status.pb.h"
+#include "lipofill/v1/plan_service.pb.h"
 #include "tests/integration/security/reflected_api.h"
 #include "tests/integration/security/secure_fixture.h"
 
@@ -52,6 +53,16 @@ std::vector<Row> rows_about(const Possessions& theirs) {
       {"PatientService/DeleteModel", named(theirs.model)},
       {"PatientService/DownloadModelMesh", named(theirs.model)},
       {"PatientService/DownloadScanMesh", named(theirs.scan)},
+      {"PlanService/CreatePlan", below(theirs.patient)},
+      {"PlanService/CreatePlan", below("patients/-", R"(,"plan":{"scan":")" + theirs.scan + "\"}")},
+      {"PlanService/GetPlan", named(theirs.plan)},
+      {"PlanService/ListPlans", below(theirs.patient)},
+      {"PlanService/UpdatePlan", R"({"plan":{"name":")" + theirs.plan + R"(","title":"x"}})"},
+      {"PlanService/UpdatePlan", R"({"plan":{"name":")" + theirs.plan + R"(","etag":"old"}})"},
+      {"PlanService/DeletePlan", named(theirs.plan)},
+      {"PlanService/AddPlanRun", R"({"name":")" + theirs.plan + R"(","simulation":")" + theirs.simulation + "\"}"},
+      {"PlanService/ListPlanRevisions", below(theirs.plan)},
+      {"PlanService/GetPlanRevision", R"({"name":")" + theirs.plan + R"(","revision":"1"})"},
       {"PlanningService/MakeTarget", below(theirs.patient, R"(,"spec":{"scan":")" + theirs.scan + "\"}")},
       {"PlanningService/MeasureDeficit", R"({"scan":")" + theirs.scan + R"(","targetScan":")" + theirs.scan + "\"}"},
       {"PlanningService/ProposePlan", below(theirs.patient, R"(,"spec":{"targetScan":")" + theirs.scan + "\"}")},
@@ -128,6 +139,14 @@ class TenantsTest : public SecureTest {
     EXPECT_TRUE(answer.messages.size() == 1 && response.ParseFromString(answer.messages[0]));
     return response;
   }
+  /// The number of plans of all patients that somebody is shown.
+  int shown_plans(const Caller& someone) {
+    const Answer answer = someone.call_json("PlanService/ListPlans", R"({"parent":"patients/-"})");
+    EXPECT_TRUE(answer.status.ok()) << answer.status.error_message();
+    v1::ListPlansResponse response;
+    EXPECT_TRUE(answer.messages.size() == 1 && response.ParseFromString(answer.messages[0]));
+    return response.plans_size();
+  }
   /// Numbers of patients, simulations and operations that somebody is shown.
   std::vector<int> shown(const Caller& someone) {
     return {list<v1::ListPatientsResponse>(someone, "PatientService/ListPatients").patients_size(),
@@ -155,6 +174,10 @@ TEST_F(TenantsTest, WhatIsAnothersIsAsWhatIsNotThere) {
   EXPECT_THAT(shown(caller("ward", "viewer", {"ward-b"})), ::testing::ElementsAre(0, 0, 0));
   EXPECT_THAT(shown(caller("ward", "viewer", {"ward-a", "ward-b"})), ::testing::ElementsAre(1, 1, 1));
   EXPECT_THAT(shown(caller("ward", "viewer")), ::testing::ElementsAre(1, 1, 1));
+  EXPECT_EQ(shown_plans(clinic), 0);
+  EXPECT_EQ(shown_plans(caller("ward", "viewer", {"ward-b"})), 0);
+  EXPECT_EQ(shown_plans(caller("ward", "viewer", {"ward-a"})), 1);
+  EXPECT_EQ(shown_plans(caller("ward", "viewer")), 1);
   const Caller viewer = caller("ward", "viewer", {"ward-a"});
   EXPECT_TRUE(viewer.call_json("PatientService/GetModel", R"({"name":")" + wards_.model + "\"}").status.ok());
   EXPECT_TRUE(

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "lipofill/v1/forecast_service.pb.h"
+#include "lipofill/v1/plan_service.pb.h"
 #include "lipofill/v1/planning_service.pb.h"
 #include "tests/integration/service/run_fixture.h"
 
@@ -94,6 +95,33 @@ std::vector<Row> patient_rows() {
   };
 }
 
+/// patients/anna has no plan.
+std::vector<Row> plan_rows() {
+  const std::string plans = "PlanService/";
+  return {
+      invalid(plans + "CreatePlan", R"({"parent":"anna","planId":"X","plan":{"title":"A B","content":{"scan":{}}}})",
+              {"parent", "plan_id"}),
+      invalid(plans + "CreatePlan", R"({"parent":"patients/anna","plan":{"title":"A B","content":{"scan":{}}}})",
+              {"plan.content.scan", "plan.title"}),
+      absent(plans + "CreatePlan", R"({"parent":"patients/anna","plan":{"scan":"patients/anna/scans/none"}})"),
+      absent(plans + "CreatePlan", R"({"parent":"patients/berta","validateOnly":true})"),
+      invalid(plans + "GetPlan", R"({"name":"patients/anna/plans/none","readMask":"nose"})", {"read_mask.paths[0]"}),
+      absent(plans + "GetPlan", R"({"name":"patients/anna/plans/none"})"),
+      invalid(plans + "ListPlans", R"({"parent":"anna"})", {"parent"}),
+      invalid(plans + "ListPlans", R"({"parent":"patients/-","pageSize":-1})", {"page_size"}),
+      absent(plans + "ListPlans", R"({"parent":"patients/berta"})"),
+      invalid(plans + "UpdatePlan", R"({"plan":{"name":"patients/anna"},"updateMask":"runs"})",
+              {"plan.name", "update_mask"}),
+      absent(plans + "UpdatePlan", R"({"plan":{"name":"patients/anna/plans/none"}})"),
+      absent(plans + "DeletePlan", R"({"name":"patients/anna/plans/none"})"),
+      invalid(plans + "AddPlanRun", R"({"name":"patients/anna/plans/none","simulation":"x"})", {"simulation"}),
+      absent(plans + "AddPlanRun", R"({"name":"patients/anna/plans/none","simulation":"simulations/x"})"),
+      invalid(plans + "ListPlanRevisions", R"({"parent":"patients/anna"})", {"parent"}),
+      absent(plans + "ListPlanRevisions", R"({"parent":"patients/anna/plans/none"})"),
+      absent(plans + "GetPlanRevision", R"({"name":"patients/anna/plans/none","revision":"1"})"),
+  };
+}
+
 std::vector<Row> simulation_rows() {
   const std::string simulations = "SimulationService/";
   const std::string planning = "PlanningService/";
@@ -177,13 +205,15 @@ std::vector<Row> other_rows() {
 
 std::vector<Row> all_rows() {
   std::vector<Row> rows = patient_rows();
-  for (const auto& more : {simulation_rows(), other_rows()}) rows.insert(rows.end(), more.begin(), more.end());
+  for (const auto& more : {plan_rows(), simulation_rows(), other_rows()})
+    rows.insert(rows.end(), more.begin(), more.end());
   return rows;
 }
 
 const google::protobuf::MethodDescriptor* find_method(const std::string& method) {
   v1::MakeTargetRequest::descriptor();  // no stub here makes the linker take the services' files
   v1::MakeForecastRequest::descriptor();
+  v1::CreatePlanRequest::descriptor();
   std::string name = "lipofill.v1." + method;
   name[name.find('/')] = '.';
   return google::protobuf::DescriptorPool::generated_pool()->FindMethodByName(name);
@@ -244,7 +274,8 @@ TEST(ErrorTable, HasEveryCallOfTheApi) {
   std::set<std::string> tabled;
   for (const Row& row : all_rows()) tabled.insert(row.method);
   const auto* pool = google::protobuf::DescriptorPool::generated_pool();
-  for (const char* service : {"PatientService", "OperationService", "SimulationService", "FrameService"}) {
+  for (const char* service :
+       {"PatientService", "OperationService", "SimulationService", "FrameService", "PlanService"}) {
     const auto* descriptor = pool->FindServiceByName(std::string("lipofill.v1.") + service);
     ASSERT_NE(descriptor, nullptr) << service;
     for (int i = 0; i < descriptor->method_count(); ++i) {

@@ -14,8 +14,8 @@
 namespace lipofill::server {
 
 /// Makes a store in a data directory that has one of everything: a patient with a label, a scan
-/// with its file, a model, a simulation with a command, a checkpoint, series and result, and a
-/// request.
+/// with its file, a model, a simulation with a command, a checkpoint, series and result, a plan
+/// that it was made from, and a request.
 inline std::unique_ptr<SqliteStore> make_full_store(const std::filesystem::path& data) {
   std::filesystem::create_directories(data);
   auto opened = SqliteStore::open((data / "lipofill.sqlite").string());
@@ -59,6 +59,15 @@ inline std::unique_ptr<SqliteStore> make_full_store(const std::filesystem::path&
   EXPECT_TRUE(store->create_checkpoint(checkpoint, SeriesChunk{1, 7, "rows of a series"}, {}).ok());
   simulation.state = SimulationState::kFinished;
   EXPECT_TRUE(store->end_simulation(simulation, {"meshes of a result", "the frame of a result"}).ok());
+  PlanRecord plan;
+  plan.patient = "anna";
+  plan.id = "plan-1";
+  plan.scan = "scan-1";
+  plan.content_message = "what a plan keeps";
+  plan.changes_message = "what changed in it";
+  plan.create_time_us = 5;
+  EXPECT_TRUE(store->create_plan(plan, {}).ok());
+  EXPECT_TRUE(store->add_plan_run("anna", "plan-1", {"sim-1", "its hash", 6}).ok());
   return store;
 }
 

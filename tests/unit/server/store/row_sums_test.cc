@@ -46,6 +46,12 @@ class Answers {
     add(result.ok() ? result->meshes_message + result->frame_message : "", result.status());
     const auto owner = store.owner_of_simulation("sim-1");
     add(owner.ok() ? owner->tenant + owner->patient : "", owner.status());
+    const auto plan = store.get_plan("anna", "plan-1");
+    add(plan.ok() ? absl::StrCat(plan->revision, plan->scan, plan->target, plan->content_message) : "", plan.status());
+    const auto revision = store.get_plan_revision("anna", "plan-1", 1);
+    add(revision.ok() ? revision->content_message + revision->changes_message : "", revision.status());
+    const auto runs = store.list_plan_runs("anna", "plan-1");
+    add(runs.ok() && !runs->empty() ? runs->front().simulation + runs->front().content_hash : "", runs.status());
     const auto request = store.find_request({"Create", "r1", "f"});
     add(request.ok() && request->has_value() ? **request : "", request.status());
   }

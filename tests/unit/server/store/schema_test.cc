@@ -10,6 +10,7 @@
 #include <set>
 
 #include "absl/strings/str_cat.h"
+#include "server/store/row_sums.h"
 #include "server/store/sqlite_store.h"
 #include "tests/unit/server/temporary_directory.h"
 
@@ -89,6 +90,29 @@ CREATE INDEX simulations_by_tenant ON simulations(tenant, id);
 PRAGMA user_version = 4;
 )";
 
+/// Version 5 knows itself, sums its rows, and records files that may be removed.
+constexpr char kVersion5[] = R"(
+CREATE TABLE store (id BLOB NOT NULL, starts INTEGER NOT NULL);
+INSERT INTO store SELECT CAST(lower(hex(randomblob(16))) AS BLOB), 0;
+CREATE TABLE temporary_files (path BLOB PRIMARY KEY, is_draft INTEGER NOT NULL) WITHOUT ROWID;
+CREATE TRIGGER files_of_scans AFTER DELETE ON scans BEGIN
+  INSERT OR REPLACE INTO temporary_files
+    VALUES (CAST('scans/' || CAST(OLD.patient AS TEXT) || '/' || CAST(OLD.id AS TEXT) AS BLOB), 0); END;
+CREATE TRIGGER files_of_checkpoints AFTER DELETE ON checkpoints BEGIN
+  INSERT OR REPLACE INTO temporary_files
+    VALUES (CAST('checkpoints/' || CAST(OLD.simulation AS TEXT) || '/' || CAST(OLD.id AS TEXT) AS BLOB), 0); END;
+CREATE TRIGGER recorded_checkpoints AFTER INSERT ON checkpoints BEGIN
+  DELETE FROM temporary_files
+    WHERE path = CAST('checkpoints/' || CAST(NEW.simulation AS TEXT) || '/' || CAST(NEW.id AS TEXT) AS BLOB); END;
+PRAGMA user_version = 5;
+)";
+
+/// The sums of version 5: what is summed since then.
+std::string sums_of_version_5() {
+  std::string statements = make_row_sums(0);
+  return statements.substr(0, statements.find("\nALTER TABLE plans "));
+}
+
 constexpr char kContent[] = R"(
 INSERT INTO patients (id, display_name, create_time_us) VALUES (x'61', x'6e616d65', 1);
 INSERT INTO patient_labels VALUES (x'61', x'6b', x'76');
@@ -130,6 +154,8 @@ class SchemaTest : public ::testing::TestWithParam<int> {
     ASSERT_TRUE((*database)->execute(version >= 4 ? kVersion4 : "").ok());
     ASSERT_TRUE((*database)->execute(kContent).ok());
     ASSERT_TRUE((*database)->execute(version >= 4 ? kRequestOfTenant : kRequest).ok());
+    ASSERT_TRUE((*database)->execute(version >= 5 ? kVersion5 : "").ok());
+    ASSERT_TRUE((*database)->execute(version >= 5 ? sums_of_version_5().c_str() : "").ok());
   }
   lipofill::testing::TemporaryDirectory directory_;
   std::string path_ = directory_.file("db");
@@ -162,6 +188,7 @@ TEST_P(SchemaTest, IsBroughtUpToDateWithAllItHeld) {
       ASSERT_EQ(unended->size(), 1u);
       EXPECT_EQ(unended->front().id, "r");
     }
+    EXPECT_TRUE((*store)->list_plans({}, "a", {}, 1)->empty());
     EXPECT_EQ((*store)->owner_of_patient("a")->tenant, "local") << "what there was is the machine's own user's";
     EXPECT_EQ((*store)->owner_of_simulation("s")->tenant, "local");
     EXPECT_EQ((*store)->list_patients({}, {"", 10})->size(), 1u);
@@ -179,7 +206,7 @@ TEST_P(SchemaTest, EndsInTheShapeOfANewOne) {
 TEST_P(SchemaTest, StaysAsItIsWhenTheChangeFails) {
   make(GetParam());
   // One of the last changes finds its name taken.
-  ASSERT_TRUE((*Database::open(path_))->execute("CREATE TABLE temporary_files (x)").ok());
+  ASSERT_TRUE((*Database::open(path_))->execute("CREATE TABLE plan_runs (x)").ok());
   const std::set<std::string> before = shape_of(path_);
   EXPECT_FALSE(SqliteStore::open(path_).ok());
   EXPECT_EQ(shape_of(path_), before);

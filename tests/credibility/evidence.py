@@ -1,5 +1,6 @@
-"""The words of core/doc/credibility.md and the published figures in it, in their order; make_page.py
-fills in the tables.
+"""The words of core/doc/credibility.md and the published figures in it, in their order.
+
+make_page.py fills in the tables.
 
 Published figures keep the name of their source. Where ours differ, the difference is explained, and
 nothing is tuned so that it goes away.

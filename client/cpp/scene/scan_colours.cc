@@ -1,13 +1,12 @@
 #include "client/cpp/scene/scan_colours.h"
 
 #include <vtkNew.h>
-#include <vtkPLYReader.h>
-#include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkStaticPointLocator.h>
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
 #include <vector>
 
 #include "absl/strings/ascii.h"
@@ -16,7 +15,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "client/cpp/gltf/gltf_surface.h"
-#include "client/cpp/io/vtk_messages.h"
+#include "client/cpp/scene/ply_colours.h"
 
 namespace lipofill::client {
 namespace {
@@ -26,36 +25,39 @@ constexpr double kMostWithout = 0.05;
 /// Colour of a point without one.
 const Eigen::Vector3f kWithout(0.87F, 0.70F, 0.60F);
 
-absl::StatusOr<ColouredPoints> read_ply(const std::filesystem::path& file, double mm) {
-  const VtkMessages messages;
-  vtkNew<vtkPLYReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  vtkPolyData* const surface = reader->GetOutput();
-  vtkDataArray* colours = surface->GetPointData()->GetArray("RGB");
-  if (colours == nullptr) colours = surface->GetPointData()->GetArray("RGBA");
-  if (!messages.error().empty() || colours == nullptr || colours->GetNumberOfComponents() < 3)
-    return absl::InvalidArgumentError("has no red, green and blue of its vertices");
+/// @param brightest  the colour value that stands for 1
+ColouredPoints coloured_points(const std::vector<PlyVertex>& vertices, double mm, double brightest) {
   ColouredPoints found;
-  found.points_mm.resize(3, surface->GetNumberOfPoints());
-  found.colours.resize(3, surface->GetNumberOfPoints());
-  for (vtkIdType k = 0; k < surface->GetNumberOfPoints(); ++k) {
-    surface->GetPoint(k, found.points_mm.col(k).data());
-    for (int c = 0; c < 3; ++c) found.colours(c, k) = static_cast<float>(colours->GetComponent(k, c) / 255.0);
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  found.points_mm.resize(3, count);
+  found.colours.resize(3, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const PlyVertex& vertex = vertices[static_cast<size_t>(k)];
+    for (int c = 0; c < 3; ++c) {
+      found.points_mm(c, k) = mm * vertex[static_cast<size_t>(c)];
+      found.colours(c, k) = static_cast<float>(vertex[static_cast<size_t>(c + 3)] / brightest);
+    }
   }
-  found.points_mm *= mm;
   return found;
+}
+
+absl::StatusOr<ColouredPoints> read_ply(const std::filesystem::path& file, double mm) {
+  std::ifstream stream(file, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  const auto vertices = read_ply_colours(bytes);
+  if (!vertices.ok()) return vertices.status();
+  return coloured_points(*vertices, mm, 255.0);
 }
 
 /// "v x y z r g b", from 0 to 1 or, as some programs write them, to 255.
 absl::StatusOr<ColouredPoints> read_obj(const std::filesystem::path& file, double mm) {
   std::ifstream stream(file);
-  std::vector<std::array<double, 6>> vertices;
+  std::vector<PlyVertex> vertices;
   std::string line;
   while (std::getline(stream, line)) {
     const std::vector<std::string> words = absl::StrSplit(line, absl::ByAnyChar(" \t\r"), absl::SkipEmpty());
     if (words.size() != 7 || words[0] != "v") continue;
-    std::array<double, 6> vertex{};
+    PlyVertex vertex{};
     bool good = true;
     for (size_t k = 0; k < vertex.size(); ++k) good = absl::SimpleAtod(words[k + 1], &vertex[k]) && good;
     if (good) vertices.push_back(vertex);
@@ -64,18 +66,7 @@ absl::StatusOr<ColouredPoints> read_obj(const std::filesystem::path& file, doubl
   double most = 1.0;
   for (const auto& vertex : vertices) most = std::max({most, vertex[3], vertex[4], vertex[5]});
   const double scale = most > 1.0 ? 255.0 : 1.0;
-  ColouredPoints found;
-  const auto count = static_cast<Eigen::Index>(vertices.size());
-  found.points_mm.resize(3, count);
-  found.colours.resize(3, count);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const auto& vertex = vertices[static_cast<size_t>(k)];
-    for (int c = 0; c < 3; ++c) {
-      found.points_mm(c, k) = mm * vertex[static_cast<size_t>(c)];
-      found.colours(c, k) = static_cast<float>(vertex[static_cast<size_t>(c + 3)] / scale);
-    }
-  }
-  return found;
+  return coloured_points(vertices, mm, scale);
 }
 
 absl::StatusOr<ColouredPoints> read_gltf(const std::filesystem::path& file, double mm) {

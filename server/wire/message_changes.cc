@@ -29,8 +29,8 @@ std::string key_of(const Message& entry) {
 }
 
 /// The path as in the violations of a request: "films[0].injections[1].volume_ml". An element that
-/// moved has the place that it has now.
-std::string text_of(const Path& path) {
+/// moved has the place that it has now, one that was taken out the place that it had.
+std::string text_of(const Path& path, bool is_gone) {
   std::string text;
   for (const auto& step : path) {
     if (step.field == nullptr) continue;
@@ -40,7 +40,8 @@ std::string text_of(const Path& path) {
     if (entry != nullptr) {
       absl::StrAppend(&text, "[", key_of(*entry), "]");
     } else if (step.field->is_repeated()) {
-      absl::StrAppend(&text, "[", step.new_index >= 0 ? step.new_index : step.index, "]");
+      const bool is_old = is_gone && &step == &path.back();
+      absl::StrAppend(&text, "[", is_old ? step.index : step.new_index, "]");
     }
   }
   return text;
@@ -67,7 +68,7 @@ class ChangeNotes : public MessageDifferencer::Reporter {
   void ReportDeleted(const Message& before, const Message&, const Path& path) override {
     const auto& last = path.back();
     const std::string value = value_of(before, last.field, last.index);
-    note(path, value.empty() ? "was taken out" : absl::StrCat("was ", value, ", was taken out"));
+    note(path, value.empty() ? "was taken out" : absl::StrCat("was ", value, ", was taken out"), true);
   }
   void ReportModified(const Message& before, const Message& after, const Path& path) override {
     const auto& last = path.back();
@@ -80,8 +81,8 @@ class ChangeNotes : public MessageDifferencer::Reporter {
   std::vector<FieldViolation> take() { return std::move(changes_); }
 
  private:
-  void note(const Path& path, const std::string& what) {
-    if (changes_.size() < most_) changes_.push_back({text_of(path), what});
+  void note(const Path& path, const std::string& what, bool is_gone = false) {
+    if (changes_.size() < most_) changes_.push_back({text_of(path, is_gone), what});
   }
 
   const size_t most_;

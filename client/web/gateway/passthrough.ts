@@ -11,11 +11,12 @@ import { connect as connectSocket } from "node:net";
 import { FrameService } from "@wire/frame_service_pb";
 import { OperationService } from "@wire/operation_service_pb";
 import { PatientService } from "@wire/patient_service_pb";
+import { PlanService } from "@wire/plan_service_pb";
 import { PlanningService } from "@wire/planning_service_pb";
 import { SimulationService } from "@wire/simulation_service_pb";
 import type { CallerTransports } from "./callers";
 
-const services = [FrameService, OperationService, PatientService, PlanningService, SimulationService];
+const services = [FrameService, OperationService, PatientService, PlanService, PlanningService, SimulationService];
 const passedBack = ["x-request-id"];
 
 /** "Bearer " and a token of at most 8 KiB, which is all that the daemon looks at. */

@@ -46,12 +46,14 @@ TEST(MessageChanges, TellWhatIsNewAndWhatWasTakenOut) {
 
 TEST(MessageChanges, NameEntriesOfMapsByTheirKeys) {
   const auto at = [](const std::string& name, double x) {
-    return absl::StrCat("content { model { scan_region { landmarks_mm { key: '", name, "' value { x: ", x,
-                        " } } } } }");
+    return absl::StrCat("landmarks_mm { key: '", name, "' value { x: ", x, " } } ");
   };
-  EXPECT_THAT(changes(at("pronasale", 1), at("pronasale", 2)),
+  const auto region = [](const std::string& landmarks) {
+    return absl::StrCat("content { model { scan_region { ", landmarks, "} } }");
+  };
+  EXPECT_THAT(changes(region(at("pronasale", 1)), region(at("pronasale", 2))),
               ElementsAre("content.model.scan_region.landmarks_mm[pronasale].x: was 1, is 2"));
-  EXPECT_THAT(changes(at("nasion", 1), at("nasion", 1) + at("pronasale", 2)),
+  EXPECT_THAT(changes(region(at("nasion", 1)), region(at("nasion", 1) + at("pronasale", 2))),
               ElementsAre("content.model.scan_region.landmarks_mm[pronasale]: is new"));
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "client/cli/exit_codes.h"
@@ -23,7 +24,8 @@ class Application {
   std::string server = default_server();
   CredentialFiles credential_files = credential_files_of_environment();
   bool json = false;
-  Action action;  ///< what the command line asks for
+  std::vector<std::string> words;  ///< of the command line, after the program's name
+  Action action;                   ///< what the command line asks for
 
   /// Makes Ctrl-C ask to stop, from here on, instead of ending the program.
   const Interrupt& interrupt();
@@ -80,5 +82,6 @@ void add_target_command(CLI::App& root, Application& application);
 void add_operation_commands(CLI::App& root, Application& application);
 void add_health_command(CLI::App& root, Application& application);
 void add_render_command(CLI::App& root, Application& application);
+void add_report_command(CLI::App& root, Application& application);
 
 }  // namespace lipofill::client

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
+#include "client/cli/distance_fields.h"
 #include "client/cli/picture.h"
 #include "client/cli/process.h"
 #include "client/cpp/io/mesh_files.h"
@@ -20,17 +20,6 @@ namespace lipofill::client {
 namespace {
 
 constexpr size_t kMostRegions = 9;
-
-Array distance_field(const v1::Deficit& deficit) {
-  Array field;
-  field.name = "scan.distance";
-  field.unit = "mm";
-  field.location = ArrayLocation::kPoint;
-  field.shape = {static_cast<size_t>(deficit.distance_mm_size())};
-  field.bytes.resize(field.shape[0] * sizeof(float));
-  std::memcpy(field.bytes.data(), deficit.distance_mm().data(), field.bytes.size());
-  return field;
-}
 
 /// Regions from the one that lacks most on.
 std::vector<v1::RegionDeficit> find_worst(const v1::Deficit& deficit) {

@@ -70,21 +70,6 @@ void add_retention_options(CLI::App& command, Message message) {
                     [message](double value) { message()->mutable_follow_up()->set_standard_error_ml(value); });
 }
 
-void add_choices(CLI::App& command, const std::shared_ptr<ForecastOptions>& options) {
-  const auto spec = [options] { return &options->spec; };
-  add_retention_options(command, spec);
-  add_field<uint32_t>(command, "--members", "cases that are solved (default 500)",
-                      [spec](uint32_t value) { spec()->set_members(value); });
-  add_field<double>(command, "--skin-volume-ml", "volume that the skin has gained by the follow-up",
-                    [spec](double value) { spec()->mutable_follow_up()->set_skin_volume_ml(value); });
-  add_field<double>(command, "--session-band-mmhg", "a session fills a zone up to this pressure (default 30)",
-                    [spec](double value) { spec()->set_session_band_mmhg(value); });
-  add_field<double>(command, "--months-between", "months from one session to the next (default 6)",
-                    [spec](double value) { spec()->set_months_between_sessions(value); });
-  command.add_flag_function(
-      "--figures-only", [spec](int64_t) { spec()->set_figures_only(true); }, "leave out the values of every vertex");
-}
-
 void add_retention_command(CLI::App& root, Application& application) {
   const auto request = std::make_shared<v1::EstimateRetentionRequest>();
   CLI::App* command = add_command(
@@ -105,13 +90,28 @@ void add_retention_command(CLI::App& root, Application& application) {
 
 }  // namespace
 
+void add_forecast_options(CLI::App& command, const std::function<v1::ForecastSpec*()>& spec) {
+  add_retention_options(command, spec);
+  add_field<uint32_t>(command, "--members", "cases that are solved (default 500)",
+                      [spec](uint32_t value) { spec()->set_members(value); });
+  add_field<double>(command, "--skin-volume-ml", "volume that the skin has gained by the follow-up",
+                    [spec](double value) { spec()->mutable_follow_up()->set_skin_volume_ml(value); });
+  add_field<double>(command, "--session-band-mmhg", "a session fills a zone up to this pressure (default 30)",
+                    [spec](double value) { spec()->set_session_band_mmhg(value); });
+  add_field<double>(command, "--months-between", "months from one session to the next (default 6)",
+                    [spec](double value) { spec()->set_months_between_sessions(value); });
+}
+
 void add_forecast_commands(CLI::App& root, Application& application) {
   const auto options = std::make_shared<ForecastOptions>();
   CLI::App* command = add_command(root, application, "forecast", kDescription, kExamples,
                                   [&application, options] { return ForecastRun(application, *options).carry_out(); });
   add_plan_work_options(*command, *options);
   command->add_option("--settings", options->settings, "a JSON file with a ForecastSpec: inputs and the rest");
-  add_choices(*command, options);
+  add_forecast_options(*command, [options] { return &options->spec; });
+  command->add_flag_function(
+      "--figures-only", [options](int64_t) { options->spec.set_figures_only(true); },
+      "leave out the values of every vertex");
   add_retention_command(root, application);
 }
 

@@ -25,6 +25,7 @@ constexpr char kExamples[] =
     "  lipofill run jaw_angle.json --out result               the same on the daemon at $LIPOFILL_SERVER\n"
     "  lipofill evaluate result --target goal.obj             how far the simulated skin is from a goal\n"
     "  lipofill propose jaw_angle.json --target goal.obj --out proposed --spawn    volumes that fill what is missing\n"
+    "  lipofill report jaw_angle.json --out report --spawn    a page of all that is known of a plan, to print\n"
     "  lipofill scan extract head.nii.gz --out skin.ply       the skin in a CT\n"
     "  lipofill simulation list --json                        for scripts: every command has --json\n"
     "  lipofill COMMAND --help                                examples of each command\n\n";
@@ -42,6 +43,7 @@ void add_all_commands(CLI::App& root, Application& application) {
   add_propose_command(root, application);
   add_deliver_command(root, application);
   add_forecast_commands(root, application);
+  add_report_command(root, application);
   add_shape_command(root, application);
   add_target_command(root, application);
   add_render_command(root, application);
@@ -119,6 +121,7 @@ ExitCode carry_out(Application& application) {
 
 int run(int argc, char** argv) {
   Application application;
+  application.words.assign(argv + 1, argv + argc);
   CLI::App root(
       "Plans facial fat grafting: sends plans to a lipofilld, watches, measures and draws what comes of them.",
       "lipofill");

@@ -53,13 +53,15 @@ absl::Status draw_picture(const std::filesystem::path& folder, Picture picture, 
   if (picture == Picture::kDistance) command.push_back("--distance");
   if (picture == Picture::kScan) command.push_back("--scan");
   if (picture == Picture::kDeficit) command.push_back("--deficit");
+  if (picture == Picture::kReport) command.push_back("--report");
   absl::Status status = absl::FailedPreconditionError(kNoScreen);
   if (has_display()) status = run_drawing(command);
   if (!absl::IsFailedPrecondition(status)) return status;
   const std::filesystem::path xvfb = find_program("xvfb-run");
   if (xvfb.empty())
     return absl::FailedPreconditionError(absl::StrCat(kNoScreen, has_display() ? ", or mend $DISPLAY" : ""));
-  command.insert(command.begin(), {xvfb.string(), "-a", "-s", "-screen 0 1280x1024x24"});
+  // Without -noreset the server begins anew after each picture, and the next may not reach it.
+  command.insert(command.begin(), {xvfb.string(), "-a", "-s", "-screen 0 1280x1024x24 -noreset"});
   return run_drawing(command);
 }
 

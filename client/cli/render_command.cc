@@ -7,6 +7,7 @@
 #include "client/cli/deficit_sheet.h"
 #include "client/cli/picture.h"
 #include "client/cli/process.h"
+#include "client/cli/report_pictures.h"
 #include "client/cli/result_figures.h"
 #include "client/cli/result_files.h"
 #include "client/cli/run_record.h"
@@ -38,6 +39,7 @@ struct Options {
   bool distance = false;
   bool scan = false;
   bool deficit = false;
+  bool report = false;
   bool in_this_process = false;
 };
 
@@ -63,6 +65,7 @@ absl::Status draw_deficit_here(const Options& options) {
 absl::Status draw_here(const Options& options) {
   if (options.scan) return draw_scan_here(options);
   if (options.deficit) return draw_deficit_here(options);
+  if (options.report) return draw_pictures_of_report(options.result);
   const auto record = read_run_record(options.result);
   if (!record.ok()) return record.status();
   PictureRequest request;
@@ -132,6 +135,7 @@ void add_render_command(CLI::App& root, Application& application) {
   // These options are hidden: they are for the child that lipofill starts under an X server.
   command->add_flag("--scan", options->scan)->group("");
   command->add_flag("--deficit", options->deficit)->group("");
+  command->add_flag("--report", options->report)->group("");
   command->add_flag("--in-this-process", options->in_this_process)->group("");
 }
 

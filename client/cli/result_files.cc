@@ -1,11 +1,10 @@
 #include "client/cli/result_files.h"
 
-#include <cstring>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "client/cli/distance_fields.h"
 #include "client/cli/picture.h"
 #include "client/cli/simulation_calls.h"
 #include "client/cpp/io/mesh_files.h"
@@ -39,26 +38,6 @@ std::string statistics_json(const v1::Evaluation& evaluation) {
   document.erase("vertices");
   document["points"] = evaluation.vertices_size();
   return document.dump(2) + "\n";
-}
-
-/// The distances as a field over all points of the mesh; not a number outside the region.
-absl::StatusOr<Array> distance_field(const v1::Evaluation& evaluation, size_t points) {
-  std::vector<float> values(points, std::numeric_limits<float>::quiet_NaN());
-  if (evaluation.vertices_size() != evaluation.distance_mm_size()) {
-    return absl::DataLossError("the evaluation has another number of distances than of points");
-  }
-  for (int i = 0; i < evaluation.vertices_size(); ++i) {
-    if (evaluation.vertices(i) >= points) return absl::DataLossError("the evaluation names a point outside its mesh");
-    values[evaluation.vertices(i)] = evaluation.distance_mm(i);
-  }
-  Array field;
-  field.name = absl::StrCat(evaluation.mesh(), ".distance");
-  field.unit = "mm";
-  field.location = ArrayLocation::kPoint;
-  field.shape = {points};
-  field.bytes.resize(points * sizeof(float));
-  std::memcpy(field.bytes.data(), values.data(), field.bytes.size());
-  return field;
 }
 
 absl::Status write_distances(const std::filesystem::path& file, const FinalState& state,

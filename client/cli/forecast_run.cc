@@ -36,6 +36,17 @@ void append_zone(const v1::ZoneVolumeForecast& zone, std::string& text) {
   text += "\n";
 }
 
+void append_grid_error(const v1::GridError& error, std::string& text) {
+  if (!error.has_lift_share()) {
+    absl::StrAppend(&text, "error of the grid: not known: ", error.reason(), "\n");
+    return;
+  }
+  absl::StrAppendFormat(&text,
+                        "error of the grid: lift %.1f %%, pressure %.1f %%, skin %.3f mm at 95 of 100 places%s\n",
+                        100.0 * error.lift_share(), 100.0 * error.pressure_share(), error.skin_mm(),
+                        error.order_holds() ? "" : " (a plain difference: no order was seen)");
+}
+
 void append_sessions(const v1::Forecast& forecast, std::string& text) {
   for (int k = 0; k < forecast.sessions_size(); ++k) {
     const v1::PlannedSession& session = forecast.sessions(k);
@@ -74,6 +85,7 @@ std::string describe(const v1::Forecast& forecast) {
     for (const v1::ForecastFigure& figure : time.figures()) append_figure(figure, text);
     for (const v1::PressureBands& bands : time.bands()) append_bands(bands, text);
   }
+  append_grid_error(forecast.grid_error(), text);
   for (const std::string& cause : forecast.causes()) absl::StrAppend(&text, cause, "\n");
   absl::StrAppend(&text, describe(forecast.retention()));
   for (const v1::ZoneVolumeForecast& zone : forecast.zones()) append_zone(zone, text);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -19,10 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr int kLeastMembers = 50;
-constexpr int kMostMembers = 10'000;
-constexpr size_t kMostTimes = 6;
-constexpr double kMostMonths = 60.0;
 /// Lifts of every vertex are kept for their quantiles [values].
 constexpr double kMostLifts = 1e8;
 /// Fewer members than this share tell nothing of the others.
@@ -44,6 +39,7 @@ class Making {
   absl::Status find_members(int workers, const KeptParts& kept);
   void summarise();
   absl::Status plan_volumes();
+  void compare_grids();
   Forecast finish();
 
  private:
@@ -201,6 +197,15 @@ absl::Status Making::plan_volumes() {
   return absl::OkStatus();
 }
 
+void Making::compare_grids() {
+  if (progress_) progress_(1.0, "comparing grids");
+  forecast_.grid_error = estimate_grid_error(model_, request_.plan);
+  if (!forecast_.grid_error.ok()) return;
+  if (std::string remark = remark_on_order(*forecast_.grid_error); !remark.empty()) {
+    forecast_.remarks.push_back(std::move(remark));
+  }
+}
+
 void Making::remark() {
   auto& remarks = forecast_.remarks;
   if (forecast_.failed > 0) {
@@ -247,6 +252,12 @@ std::string Making::hash() const {
       hasher.add(value);
     }
   }
+  if (forecast_.grid_error.ok()) {
+    for (const double value :
+         {forecast_.grid_error->lift, forecast_.grid_error->pressure, forecast_.grid_error->skin}) {
+      hasher.add(value);
+    }
+  }
   return hasher.hex_digest();
 }
 
@@ -257,38 +268,6 @@ Forecast Making::finish() {
 }
 
 }  // namespace
-
-void check_request(const ForecastRequest& request, FieldViolations& violations) {
-  violations.check_range("members", request.members, kLeastMembers, kMostMembers, "");
-  if (request.months.empty() || request.months.size() > kMostTimes) {
-    violations.add("months", absl::StrCat("has ", request.months.size(), " times, must have 1 to ", kMostTimes));
-  }
-  double before = 0.0;
-  for (size_t k = 0; k < request.months.size(); ++k) {
-    if (request.months[k] > before && request.months[k] <= kMostMonths) {
-      before = request.months[k];
-      continue;
-    }
-    violations.add(absl::StrCat("months[", k, "]"),
-                   absl::StrCat("is ", request.months[k], ", must be in (", before, ", ", kMostMonths, "]"));
-  }
-  std::set<std::string> zones;
-  double injected = 0.0;
-  for (const plan::InjectionSpec& injection : request.plan.injections) {
-    zones.insert(injection.zone);
-    injected += injection.volume;
-  }
-  if (zones.empty()) violations.add("plan.injections", "has none: there is nothing to forecast");
-  for (const auto& [zone, volume] : request.wanted) {
-    const std::string field = absl::StrCat("wanted[", zone, "]");
-    if (!zones.contains(zone)) violations.add(field, "the plan has no injection into a zone of that name");
-    violations.check_range(field, volume / kCubicMetresPerMillilitre, 0.0, 1000.0, "mL");
-  }
-  if (request.follow_up && !zones.empty()) {
-    const FollowUp& found = *request.follow_up;
-    check_follow_up("follow_up", found.month, found.volume, found.standard_error, injected, violations);
-  }
-}
 
 absl::StatusOr<Forecast> make_forecast(const std::shared_ptr<const model::FaceModel>& model,
                                        const ForecastRequest& request, int workers, const KeptParts& kept,
@@ -302,6 +281,7 @@ absl::StatusOr<Forecast> make_forecast(const std::shared_ptr<const model::FaceMo
   if (auto status = making.find_members(workers, kept); !status.ok()) return status;
   making.summarise();
   if (auto status = making.plan_volumes(); !status.ok()) return status;
+  making.compare_grids();
   return making.finish();
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "core/forecast/grid_error.h"
 #include "core/forecast/influence.h"
 #include "core/forecast/retention.h"
 #include "core/forecast/sessions.h"
@@ -89,6 +90,7 @@ struct Forecast {
   Retention prior;  ///< before the follow-up
   std::vector<ZoneForecast> zones;
   std::vector<Session> sessions;
+  absl::StatusOr<GridError> grid_error = absl::UnknownError("it was not estimated");
   std::vector<std::string> remarks;
   std::string content_hash;
 };

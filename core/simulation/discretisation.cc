@@ -2,45 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <utility>
 #include <vector>
 
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/base/units.h"
-#include "core/plan/coarse_plan.h"
+#include "core/simulation/half_grid.h"
 #include "core/simulation/skin_difference.h"
 
 namespace lipofill::simulation {
 namespace {
 
 constexpr double kOrder = 1.5;
-/// Widths nearer to each other than this tell nothing.
-constexpr double kLeastRatio = 1.4;
-constexpr uint64_t kMostSteps = 400;
 constexpr double kToldShareOfSkin = 0.95;
-
-absl::Status unknown(std::string why) {
-  return absl::FailedPreconditionError(std::move(why));
-}
-
-double ratio_of_widths(const geometry::LayeredGrid& fine, const geometry::LayeredGrid& coarse) {
-  return std::sqrt(static_cast<double>(fine.n_xi) * fine.n_eta / (static_cast<double>(coarse.n_xi) * coarse.n_eta));
-}
-
-/// The plan on the coarse model, at rest.
-absl::StatusOr<std::unique_ptr<Simulation>> settle(const Simulation& fine,
-                                                   std::shared_ptr<const model::FaceModel> model) {
-  plan::SimulationSpec plan = plan::coarsen_plan(fine.spec(), fine.model(), *model);
-  plan.error_tolerance = fine.spec().error_tolerance;
-  auto coarse = Simulation::create(std::move(model), std::move(plan));
-  if (!coarse.ok())
-    return unknown(absl::StrCat("a grid half as fine cannot hold the plan: ", coarse.status().message()));
-  while ((*coarse)->phase() == Phase::kRunning && (*coarse)->report().step < kMostSteps) (*coarse)->advance_step();
-  if ((*coarse)->phase() == Phase::kSettled) return coarse;
-  return unknown(absl::StrCat("on a grid half as fine the plan does not come to rest in ", kMostSteps, " steps"));
-}
 
 /// Finds the value that `share` of the values do not exceed; 0 without any.
 double quantile(std::vector<double> values, double share) {
@@ -68,13 +41,9 @@ double largest_pressure_difference(const Simulation& fine, const Simulation& coa
 }  // namespace
 
 absl::StatusOr<DiscretisationError> estimate_discretisation_error(const Simulation& settled) {
-  if (settled.phase() != Phase::kSettled) return unknown("the simulation has not settled");
-  if (settled.model().layers.empty()) return unknown("the model has no tissue");
-  const std::shared_ptr<const model::FaceModel> coarse_model = plan::halve_model(settled.model());
-  const double ratio = ratio_of_widths(settled.model().geometry.grid, coarse_model->geometry.grid);
-  if (ratio < kLeastRatio) return unknown("the grid has too few divisions to be halved");
-  const auto coarse = settle(settled, coarse_model);
+  const auto coarse = settle_on_half_grid(settled);
   if (!coarse.ok()) return coarse.status();
+  const double ratio = ratio_of_widths(settled, **coarse);
   const double extrapolated = 1.0 / (std::pow(ratio, kOrder) - 1.0);
   DiscretisationError error;
   error.lift = extrapolated *

@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
 #include "core/base/units.h"
+#include "server/wire/grid_error_conversion.h"
 #include "server/wire/retention_conversion.h"
 #include "server/wire/simulation_conversion.h"
 
@@ -286,6 +287,7 @@ v1::Forecast to_forecast(const forecast::Forecast& forecast) {
     for (const double volume : session.inject) to.add_inject_ml(volume / kMl);
     for (const double volume : session.present) to.add_present_ml(volume / kMl);
   }
+  *message.mutable_grid_error() = to_grid_error(forecast.grid_error);
   message.mutable_remarks()->Add(forecast.remarks.begin(), forecast.remarks.end());
   message.set_content_hash(forecast.content_hash);
   return message;

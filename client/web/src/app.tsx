@@ -2,8 +2,10 @@
 import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { setToken, token } from "./api/client";
+import { CaseList } from "./cases/case_list";
 import { Dashboard } from "./dashboard/dashboard";
 import { writeAddress } from "./case/address";
+import { keeping, saved } from "./case/saved_plan";
 import { address, bindAddress, page } from "./case/restore";
 import { redoChange, undoChange } from "./keyboard";
 import { canRedo, canUndo, patientName, plan } from "./plan/state";
@@ -51,6 +53,23 @@ function CaseName() {
   );
 }
 
+const words = {
+  kept: "",
+  saving: "Saving…",
+  waiting: "Not saved yet: the daemon cannot be reached",
+  refused: "Not saved",
+};
+
+/** Whether what is on the page is on the daemon. */
+function Keeping() {
+  const text = keeping.value === "kept" && saved.value ? "Saved" : words[keeping.value];
+  return (
+    <span class={`keeping ${keeping.value}`} role="status">
+      {text}
+    </span>
+  );
+}
+
 function Changes() {
   return (
     <span class="changes">
@@ -66,7 +85,7 @@ function Changes() {
 
 export function App() {
   useEffect(bindAddress, []);
-  const onDashboard = page.value === "dashboard";
+  const onPlan = page.value === "plan";
   return (
     <>
       <header class="top">
@@ -74,16 +93,20 @@ export function App() {
           <img src="./icon.svg" alt="" width="26" height="26" />
           Lipofill
         </span>
-        {!onDashboard && <CaseName />}
+        {onPlan && <CaseName />}
         <nav aria-label="Pages">
-          <a href={writeAddress({ ...address.value, page: "plan" })} aria-current={onDashboard ? undefined : "page"}>
+          <a href={writeAddress({ ...address.value, page: "plan" })} aria-current={onPlan ? "page" : undefined}>
             Planner
           </a>
-          <a href="#dashboard" aria-current={onDashboard ? "page" : undefined}>
+          <a href="#cases" aria-current={page.value === "cases" ? "page" : undefined}>
+            Cases
+          </a>
+          <a href="#dashboard" aria-current={page.value === "dashboard" ? "page" : undefined}>
             Dashboard
           </a>
         </nav>
-        {!onDashboard && <Changes />}
+        {onPlan && <Changes />}
+        {onPlan && <Keeping />}
         {notice.value && (
           <span class="notice" role="alert">
             {notice.value}
@@ -95,7 +118,9 @@ export function App() {
         <span class="disclaimer">Research and planning aid, not a medical device</span>
       </header>
       <Credentials />
-      {onDashboard ? <Dashboard /> : <Planner />}
+      {onPlan && <Planner />}
+      {page.value === "cases" && <CaseList />}
+      {page.value === "dashboard" && <Dashboard />}
     </>
   );
 }

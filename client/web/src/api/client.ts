@@ -5,6 +5,7 @@ import { signal } from "@preact/signals";
 import { FrameService } from "@wire/frame_service_pb";
 import { OperationService } from "@wire/operation_service_pb";
 import { PatientService } from "@wire/patient_service_pb";
+import { PlanService } from "@wire/plan_service_pb";
 import { PlanningService } from "@wire/planning_service_pb";
 import { SimulationService } from "@wire/simulation_service_pb";
 
@@ -33,5 +34,6 @@ export const transport = createGrpcWebTransport({ baseUrl: location.origin, inte
 export const patients = createClient(PatientService, transport);
 export const simulations = createClient(SimulationService, transport);
 export const frames = createClient(FrameService, transport);
+export const plans = createClient(PlanService, transport);
 export const planning = createClient(PlanningService, transport);
 export const operations = createClient(OperationService, transport);

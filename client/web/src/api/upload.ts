@@ -47,7 +47,10 @@ async function send(name: string, offset: number, data: Uint8Array): Promise<Sca
   return response.message;
 }
 
-/** @param progress told the share that has arrived, 0 to 1 */
+/**
+ * Nothing stays of a file that is refused.
+ * @param progress told the share that has arrived, 0 to 1
+ */
 export async function uploadScan(
   parent: string,
   fileName: string,
@@ -71,6 +74,7 @@ export async function uploadScan(
       scan = await send(scan.name, offset, bytes.subarray(offset, offset + chunkBytes));
       retries = 0;
     } catch (error) {
+      if (!isLost(error)) await patients.deleteScan({ name: scan.name }).catch(() => undefined);
       if (!isLost(error) || ++retries > mostRetries) throw error;
       await new Promise((resolve) => setTimeout(resolve, 500 * retries));
       scan = await patients.getScan({ name: scan.name });

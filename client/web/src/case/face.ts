@@ -17,6 +17,7 @@ import { liveSite, tool } from "../plan/tools";
 import { close as closeRun } from "../run/run";
 import { forgetShape } from "../shape/finder";
 import { forgetGoal } from "../target/state";
+import { leavePlan } from "./keeper";
 
 export interface Owner {
   name: string;
@@ -34,6 +35,7 @@ export async function loadMesh(of: Scan): Promise<Mesh> {
 
 /** What was of the face before. */
 function leaveFace(): void {
+  leavePlan();
   closeRun();
   forgetShape();
   forgetGoal();

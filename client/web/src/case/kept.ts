@@ -1,5 +1,5 @@
-// The plan under work, kept in this tab: the daemon has scans, models and runs, but not what was
-// not run yet.
+// The plan under work, in this tab: what the daemon does not have, as it could not be reached or
+// the page was left in the middle of a change, and the plan of a page without a patient.
 import { fromJsonString, toJsonString } from "@bufbuild/protobuf";
 import { PlanSchema, ScanUnit, type Plan } from "@wire/plan_pb";
 
@@ -15,6 +15,11 @@ export interface Kept {
   target: string;
   /** the plan that the run is of */
   planOfRun: string;
+  /** patients/{patient}/plans/{plan} that the daemon keeps, and the etag last heard of it */
+  saved: string;
+  etag: string;
+  /** there is something that the daemon has yet to keep */
+  hasNews: boolean;
 }
 
 const keyOf = (patient: string): string => `lipofill.plan.${patient || "new"}`;

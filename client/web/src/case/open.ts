@@ -1,23 +1,27 @@
 // Opens what the daemon has: a patient's case, a run with the plan that it is of, the sample.
-import { clone } from "@bufbuild/protobuf";
+import { clone, equals } from "@bufbuild/protobuf";
 import { batch } from "@preact/signals";
 import { Code, ConnectError } from "@connectrpc/connect";
-import type { Model } from "@wire/model_pb";
+import { ModelSpecSchema, type Model } from "@wire/model_pb";
 import { ScanFormat, type Scan } from "@wire/patient_service_pb";
-import { ScanUnit, type Plan } from "@wire/plan_pb";
+import { PlanSchema, ScanUnit, type Plan } from "@wire/plan_pb";
+import type { SavedPlan } from "@wire/plan_service_pb";
 import { SimulationSpecSchema, type Simulation } from "@wire/simulation_pb";
 import { attempt, remark } from "../activity";
-import { patients, simulations } from "../api/client";
+import { patients, plans, simulations } from "../api/client";
 import { collectMeshes } from "../api/meshes";
 import { uploadScan } from "../api/upload";
 import { build, takeLandmarks, takePlan } from "../plan/actions";
 import { newPlan } from "../plan/new_plan";
 import { createPatient } from "../plan/patient";
 import { parsePlan } from "../plan/plan_file";
-import { patient, patientName, plan, replacePlan, scan, setModel, startPlan } from "../plan/state";
+import { patient, patientName, plan, replacePlan, scan, setModel, specText, startPlan } from "../plan/state";
 import { open, runText } from "../run/run";
 import { planOfRun } from "../run/state";
+import { listTargets, showTarget } from "../target/make_target";
 import { beginCase, closeCase, loadMesh, ownerOf, showFace, type Owner } from "./face";
+import { keepPlan } from "./keeper";
+import { keptDraft, saved, setSaved } from "./saved_plan";
 
 /** Of what may be gone: undefined. */
 export async function found<T>(ask: Promise<T>): Promise<T | undefined> {
@@ -30,7 +34,7 @@ export async function found<T>(ask: Promise<T>): Promise<T | undefined> {
 }
 
 /** The name is only known where this page sent the file. */
-const fileOf = ({ name, format, unit }: Scan): { name: string; unit: ScanUnit } => ({
+export const fileOf = ({ name, format, unit }: Scan): { name: string; unit: ScanUnit } => ({
   name: `${name.split("/").pop()}.${(ScanFormat[format] ?? "obj").toLowerCase()}`,
   unit,
 });
@@ -65,6 +69,76 @@ async function showModel(owner: Owner, model: Model, run: Simulation | undefined
   });
 }
 
+const newest = <T extends { createTime?: { seconds: bigint } }>(all: T[]): T | undefined =>
+  [...all].sort((a, b) => Number((b.createTime?.seconds ?? 0n) - (a.createTime?.seconds ?? 0n)))[0];
+
+/** All pages of a list. */
+export async function allOf<T>(page: (pageToken: string) => Promise<{ all: T[]; next: string }>): Promise<T[]> {
+  const found: T[] = [];
+  for (let token = ""; ; ) {
+    const { all, next } = await page(token);
+    found.push(...all);
+    if (next === "") return found;
+    token = next;
+  }
+}
+
+/** The model that was built for the plan of the page, where the daemon has one. */
+async function takeModel(): Promise<void> {
+  const [of, spec, wanted] = [patient.value, specText.value, plan.value.model!];
+  const readMask = { paths: ["name", "spec", "create_time"] };
+  const all = await allOf(async (pageToken) => {
+    const page = await patients.listModels({ parent: of, pageSize: 1000, pageToken, readMask });
+    return { all: page.models, next: page.nextPageToken };
+  });
+  const built = newest(all.filter((model) => model.spec && equals(ModelSpecSchema, model.spec, wanted)));
+  if (built === undefined) return;
+  const [model, meshes] = await Promise.all([
+    patients.getModel({ name: built.name }),
+    collectMeshes(patients.downloadModelMesh({ name: built.name })),
+  ]);
+  if (specText.value === spec) setModel(model, meshes);
+}
+
+async function takeTarget(name: string): Promise<void> {
+  const goal = name === "" ? undefined : await found(patients.getScan({ name }));
+  if (goal) await Promise.all([showTarget(goal), listTargets()]);
+}
+
+/** Shows a plan that the daemon keeps, on its face. */
+export async function showSaved(of: SavedPlan, file?: { name: string; unit: ScanUnit }): Promise<void> {
+  const owner = await patients.getPatient({ name: ownerOf(of.name) });
+  const face = of.scan === "" ? undefined : await patients.getScan({ name: of.scan });
+  const mesh = face?.complete ? await loadMesh(face) : undefined;
+  batch(() => {
+    beginCase(owner);
+    if (face && mesh) showFace(owner, face, mesh, file ?? fileOf(face));
+    startPlan(of.content ? clone(PlanSchema, of.content) : newPlan());
+    setSaved(of);
+  });
+  await takeModel();
+  await takeTarget(of.targetScan);
+  if (saved.value?.name === of.name) setSaved(saved.value);
+}
+
+/** Opens a run beside the plan that is kept, and says whether that is the plan it was made from. */
+export async function openBeside(run: Simulation): Promise<void> {
+  const entry = saved.value?.runs.find(({ simulation }) => simulation === run.name);
+  open(run, plan.value.model?.geometry.case === "square" ? "skin" : "scan");
+  if (entry) planOfRun.value = entry.contentHash === saved.value?.contentHash ? runText.value : "an earlier plan";
+}
+
+/** The plan that a run was made from, where one is kept. */
+async function savedPlanOf(owner: string, run: string): Promise<SavedPlan | undefined> {
+  const readMask = { paths: ["name", "runs"] };
+  const all = await allOf(async (pageToken) => {
+    const page = await plans.listPlans({ parent: owner, pageSize: 1000, pageToken, readMask });
+    return { all: page.plans, next: page.nextPageToken };
+  });
+  const of = all.find(({ runs }) => runs.some(({ simulation }) => simulation === run));
+  return of && plans.getPlan({ name: of.name });
+}
+
 /** Shows a run, on its face and with its plan. */
 export async function showRun(name: string): Promise<void> {
   const run = await simulations.getSimulation({ name });
@@ -73,6 +147,12 @@ export async function showRun(name: string): Promise<void> {
     found(patients.getPatient({ name: ownerOf(of) })),
     found(patients.getModel({ name: of })),
   ]);
+  const kept = owner && (await savedPlanOf(owner.name, name));
+  if (kept) {
+    if (kept.name !== saved.value?.name) await showSaved(kept);
+    else setSaved({ ...saved.value, runs: kept.runs }, keptDraft.value);
+    return openBeside(run);
+  }
   if (owner && model) {
     await showModel(owner, model, run);
   } else {
@@ -85,20 +165,6 @@ export async function showRun(name: string): Promise<void> {
 
 export const openRun = (name: string): Promise<boolean> => attempt("Opening the run", () => showRun(name));
 
-const newest = <T extends { createTime?: { seconds: bigint } }>(all: T[]): T | undefined =>
-  [...all].sort((a, b) => Number((b.createTime?.seconds ?? 0n) - (a.createTime?.seconds ?? 0n)))[0];
-
-/** All pages of a list. */
-async function allOf<T>(page: (pageToken: string) => Promise<{ all: T[]; next: string }>): Promise<T[]> {
-  const found: T[] = [];
-  for (let token = ""; ; ) {
-    const { all, next } = await page(token);
-    found.push(...all);
-    if (next === "") return found;
-    token = next;
-  }
-}
-
 /** The newest run of a patient's models. */
 export async function runsOf(owner: string): Promise<Simulation[]> {
   const readMask = { paths: ["name", "display_name", "state", "create_time", "summary", "spec.model"] };
@@ -109,8 +175,42 @@ export async function runsOf(owner: string): Promise<Simulation[]> {
   return all.filter(({ spec }) => ownerOf(spec?.model ?? "") === owner);
 }
 
-/** A case as it was left: its newest run, else its newest model, else its newest scan. */
+/** The plans of a patient, without what is in them. */
+export function plansOf(owner: string): Promise<SavedPlan[]> {
+  const readMask = { paths: ["name", "title", "update_time"] };
+  return allOf(async (pageToken) => {
+    const page = await plans.listPlans({ parent: owner, pageSize: 1000, pageToken, readMask });
+    return { all: page.plans, next: page.nextPageToken };
+  });
+}
+
+const newestOf = (all: SavedPlan[]): SavedPlan | undefined =>
+  newest(all.map((one) => ({ ...one, createTime: one.updateTime })));
+
+async function newestRun(): Promise<Simulation | undefined> {
+  const name = saved.value?.runs[0]?.simulation;
+  return name === undefined ? undefined : found(simulations.getSimulation({ name }));
+}
+
+/** Another plan of the patient on the page. */
+export const openPlan = (name: string): Promise<boolean> =>
+  attempt("Opening the plan", async () => {
+    await showSaved(await plans.getPlan({ name }));
+    const run = await newestRun();
+    if (run) await openBeside(run);
+  });
+
+/**
+ * A case as it was left: the plan that was changed last; without one its newest
+ * run, else its newest model, else its newest scan.
+ */
 export async function showCase(name: string): Promise<void> {
+  const kept = newestOf(await plansOf(name));
+  if (kept) {
+    await showSaved(await plans.getPlan({ name: kept.name }));
+    const run = await newestRun();
+    return run && openBeside(run);
+  }
   const owner = await patients.getPatient({ name });
   const [scans, models, runs] = await Promise.all([
     patients.listScans({ parent: name, pageSize: 1000 }),
@@ -169,6 +269,7 @@ export async function openSample(name = "jaw_angle"): Promise<void> {
       takeLandmarks(landmarks, unit);
       startPlan(plan.value); // nothing of this is to be undone
     });
+    await keepPlan(true);
   });
   if (ready) await build();
 }

@@ -1,10 +1,11 @@
 // Keeps the page and its address together: what happens goes into the address, and an address that
 // is opened, reloaded or gone back to brings the page to where it was.
 import { batch, computed, effect, signal } from "@preact/signals";
-import { attempt } from "../activity";
-import { patients, simulations } from "../api/client";
+import type { Simulation } from "@wire/simulation_pb";
+import { attempt, remark } from "../activity";
+import { patients, plans, simulations } from "../api/client";
 import { collectMeshes } from "../api/meshes";
-import { builtFrom, model, patient, plan, scan, scanFile, setModel, startPlan } from "../plan/state";
+import { builtFrom, model, patient, plan, replacePlan, scan, scanFile, setModel, startPlan } from "../plan/state";
 import { open } from "../run/run";
 import { planOfRun, recorded, simulation } from "../run/state";
 import { step } from "../stage/stage_state";
@@ -12,9 +13,11 @@ import { tool } from "../plan/tools";
 import { listTargets, showTarget } from "../target/make_target";
 import { target } from "../target/state";
 import { parseAddress, writeAddress, type Address } from "./address";
-import { beginCase, closeCase, loadMesh, showFace } from "./face";
-import { found, openSample, showCase, showRun } from "./open";
+import { beginCase, closeCase, loadMesh, ownerOf, showFace } from "./face";
+import { found, openBeside, openSample, showCase, showRun, showSaved } from "./open";
+import { bindKeeper, takeOver } from "./keeper";
 import { keep, recall, type Kept } from "./kept";
+import { hasNews, saved } from "./saved_plan";
 
 const keptAfterMs = 300;
 
@@ -26,6 +29,7 @@ export const address = computed<Address>(() => ({
   page: page.value,
   step: step.value,
   patient: patient.value,
+  plan: saved.value?.name ?? "",
   scan: scan.value?.name ?? "",
   run: recorded.value === "" ? (simulation.value?.name ?? "") : "",
 }));
@@ -41,6 +45,9 @@ function keepNow(): void {
     builtFrom: builtFrom.value,
     target: target.value?.name ?? "",
     planOfRun: planOfRun.value,
+    saved: saved.value?.name ?? "",
+    etag: saved.value?.etag ?? "",
+    hasNews: hasNews.value,
   });
 }
 
@@ -59,15 +66,47 @@ async function showKept(of: string, kept: Kept): Promise<void> {
   if (goal) await Promise.all([showTarget(goal), listTargets()]);
 }
 
-async function restoreRun(name: string, planText: string): Promise<void> {
+/** A run of another patient than the page's is never shown beside this face. */
+async function runOfCase(name: string): Promise<Simulation | undefined> {
   const run = name === "" ? undefined : await found(simulations.getSimulation({ name }));
+  if (!run || patient.value === "" || ownerOf(run.spec?.model ?? "") === patient.value) return run;
+  remark.value = "The address names a run of another patient. It is not shown.";
+  return undefined;
+}
+
+async function restoreRun(name: string, planText: string): Promise<void> {
+  const run = await runOfCase(name);
   if (!run) return;
   open(run, plan.value.model?.geometry.case === "square" ? "skin" : "scan");
   planOfRun.value = planText;
 }
 
+/** What the tab has of a plan that the daemon has yet to keep. */
+async function takeUnkept(kept: Kept | undefined): Promise<void> {
+  const now = saved.value;
+  if (!kept?.hasNews || now === undefined || kept.saved !== now.name) return;
+  replacePlan(kept.plan);
+  if (kept.etag === now.etag) return;
+  // Others have changed it since: what they began from is in its history.
+  const before = await found(plans.getPlanRevision({ name: now.name, revision: BigInt(parseInt(kept.etag) || 0) }));
+  if (before?.content) takeOver(now, before.content);
+}
+
+/** Whether the plan is there and was brought. */
+async function bringPlan(name: string, to: Address, kept: Kept | undefined): Promise<boolean> {
+  const plan = name === "" ? undefined : await found(plans.getPlan({ name }));
+  if (plan === undefined) return false;
+  await showSaved(plan, kept?.scan === plan.scan ? kept.file : undefined);
+  await takeUnkept(kept);
+  const run = await runOfCase(to.run);
+  if (run) await openBeside(run);
+  return true;
+}
+
 async function bring(to: Address): Promise<void> {
   const kept = recall(to.patient);
+  const isOfTab = kept !== undefined && kept.scan === to.scan && to.patient !== "";
+  if (await bringPlan(to.plan || (isOfTab ? kept.saved : ""), to, kept)) return;
   if (kept?.scan === to.scan && (to.patient !== "" || to.run === "")) {
     await showKept(to.patient, kept);
     await restoreRun(to.run, kept.planOfRun);
@@ -76,8 +115,12 @@ async function bring(to: Address): Promise<void> {
   else closeCase();
 }
 
-const isSameCase = (one: Address, other: Address): boolean =>
-  one.patient === other.patient && one.scan === other.scan && one.run === other.run;
+/** An address that names no plan is that of the plan which came of it. */
+const isSameCase = (to: Address, now: Address): boolean =>
+  to.patient === now.patient &&
+  (to.plan === "" || to.plan === now.plan) &&
+  (to.scan === now.scan || (to.scan === "" && to.plan !== "")) &&
+  to.run === now.run;
 
 /** Brings the page to what the address bar says by then. */
 async function goToAddress(isFirst = false): Promise<void> {
@@ -116,8 +159,9 @@ export function bindAddress(): () => void {
   } else going = goToAddress(true);
   const ends = [
     effect(say),
+    bindKeeper(),
     effect(() => {
-      void [plan.value, scan.value, model.value, target.value, planOfRun.value];
+      void [plan.value, scan.value, model.value, target.value, planOfRun.value, saved.value];
       clearTimeout(timer);
       timer = setTimeout(keepNow, keptAfterMs);
     }),

@@ -159,7 +159,7 @@ function Entry({ card: { simulation, stepsPerS } }: { card: Card }) {
           </div>
         </dl>
       </div>
-      <a href={writeAddress({ page: "plan", step: "run", patient: "", scan: "", run: simulation.name })}>
+      <a href={writeAddress({ page: "plan", step: "run", patient: "", plan: "", scan: "", run: simulation.name })}>
         Open in the planner
       </a>
       {simulation.state === Simulation_State.FAILED && <p class="complaint">{simulation.reason}</p>}

@@ -7,8 +7,8 @@ import { frames } from "../api/client";
 import { meshesOf, type Mesh } from "../api/meshes";
 import { mapFor, paint, skinColour } from "../scene/colour_maps";
 import { largestOf } from "../scene/face_colours";
+import { viewOf } from "../scene/outside_view";
 import { Surface } from "../scene/surface";
-import { computeNormals, type Point } from "../scene/surface_geometry";
 import { Viewport } from "../scene/viewport";
 
 const [width, height] = [320, 240];
@@ -139,32 +139,4 @@ function colour(surface: Surface, displacement: Float32Array): void {
     else surface.colours.set(skinColour, 3 * k);
   }
   surface.recolour();
-}
-
-/** From outside, a little from below: a bulge shows against the light. */
-function viewOf(surface: Surface): { focus: Point; direction: Point; up: Point; halfHeight: number } {
-  const [low, high]: [Point, Point] = [
-    [Infinity, Infinity, Infinity],
-    [-Infinity, -Infinity, -Infinity],
-  ];
-  const normals = new Float32Array(surface.points.length);
-  computeNormals(surface.rest, surface.triangles, normals);
-  const outward: Point = [0, 0, 0];
-  for (let k = 0; k < normals.length; ++k) {
-    const c = k % 3;
-    outward[c] += normals[k];
-    low[c] = Math.min(low[c], surface.rest[k]);
-    high[c] = Math.max(high[c], surface.rest[k]);
-  }
-  const focus = low.map((v, c) => (v + high[c]) / 2) as Point;
-  const length = Math.hypot(...outward) || 1;
-  const direction = outward.map((v) => v / length) as Point;
-  const flat = Math.abs(direction[2]) > 0.99;
-  const slanted: Point = flat ? [0, -0.7, 0.714] : direction;
-  return {
-    focus,
-    direction: slanted,
-    up: flat ? [0, 0, 1] : [0, 1, 0],
-    halfHeight: 0.62 * Math.max(...low.map((v, c) => high[c] - v)),
-  };
 }

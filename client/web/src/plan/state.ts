@@ -42,7 +42,7 @@ export const zones = computed(() =>
   (plan.value.simulation?.films ?? []).flatMap((film) => film.zones.map((zone) => ({ film, zone }))),
 );
 
-const specText = computed(() => (plan.value.model ? toJsonString(ModelSpecSchema, plan.value.model) : ""));
+export const specText = computed(() => (plan.value.model ? toJsonString(ModelSpecSchema, plan.value.model) : ""));
 /** Whether the model is the one that the plan describes. */
 export const modelIsCurrent = computed(() => model.value !== undefined && builtFrom.value === specText.value);
 

@@ -14,6 +14,8 @@ import { attempt, tell } from "../activity";
 import { newId, simulations } from "../api/client";
 import { toProblem } from "../api/errors";
 import { watch, type Listener, type Seen } from "../api/watch";
+import { keepPlan, noteRun } from "../case/keeper";
+import { saved } from "../case/saved_plan";
 import { build, simulationSpec } from "../plan/actions";
 import { editPlan, model, modelIsCurrent, plan, violations } from "../plan/state";
 import { toPlanFields } from "../plan/violations";
@@ -165,12 +167,13 @@ export async function create(start: boolean): Promise<boolean> {
       .toLowerCase()
       .replace(/[^a-z0-9]+/g, "-")
       .slice(0, 63);
+    await keepPlan(true);
+    const [of, text, spec] = [saved.value, runText.value, simulationSpec()];
     try {
-      open(
-        await simulations.createSimulation({ requestId: newId(), displayName, spec: simulationSpec(), start }),
-        planFace(),
-      );
-      planOfRun.value = runText.value;
+      const made = await simulations.createSimulation({ requestId: newId(), displayName, spec, start });
+      open(made, planFace());
+      planOfRun.value = text;
+      await noteRun(made.name, of);
     } catch (error) {
       violations.value = toPlanFields(toProblem(error).violations, "simulation");
       throw error;
@@ -191,10 +194,12 @@ export async function command(which: Command): Promise<void> {
 }
 
 /** What was injected live is the plan's as well, as long as that is the plan of the run. */
-function recordInjection({ spec }: Simulation): void {
+async function recordInjection({ name, spec }: Simulation): Promise<void> {
   if (spec === undefined || planOfRun.value === "" || planHasChanged.value) return;
   editPlan(({ simulation: into }) => (into!.injections = spec.injections));
   planOfRun.value = runText.value;
+  await keepPlan();
+  await noteRun(name, saved.value);
 }
 
 /** A simulation that has settled goes on with the injection, and is followed again. */
@@ -206,7 +211,7 @@ export async function inject(injection: Injection): Promise<boolean> {
   try {
     const now = await simulations.inject({ name, injection, requestId: newId() });
     if (left.aborted) return true;
-    recordInjection(now);
+    void recordInjection(now);
     simulation.value = now;
     if (over) following = following.then(() => (left.aborted ? undefined : follow(name, faceMesh.value)));
     return true;

@@ -180,7 +180,7 @@ describe("what was done", () => {
 
 describe("a reload", () => {
   it("loses neither the face, its landmarks, the model nor the plan", async () => {
-    expect(page.url()).toMatch(/#plan\/fat\?patient=[a-z0-9-]+&scan=[a-z0-9-]+$/);
+    expect(page.url()).toMatch(/#plan\/fat\?patient=[a-z0-9-]+&plan=[a-z0-9-]+&scan=[a-z0-9-]+$/);
     await page.waitForTimeout(500);
     await page.reload();
     await page.locator(".item", { hasText: "Painted" }).waitFor({ timeout: 30_000 });

@@ -20,3 +20,14 @@ export const listPatients = (system: System): Named[] =>
 
 export const listScans = (system: System, patient: string): Named[] =>
   ask<{ scans?: Named[] }>(system, "scan", "list", patient).scans ?? [];
+
+interface Plan {
+  name: string;
+  revision: string;
+  content: { simulation: { injections: { volume_ml: number }[] } };
+  runs: { simulation: string }[];
+}
+
+export const listPlans = (system: System): Plan[] => ask<{ plans?: Plan[] }>(system, "plan", "list").plans ?? [];
+
+export const showPlan = (system: System, name: string): Plan => ask<Plan>(system, "plan", "show", name);

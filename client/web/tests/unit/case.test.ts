@@ -16,19 +16,20 @@ describe("an address", () => {
       page: "plan" as const,
       step: "fat" as const,
       patient: "patients/p1",
+      plan: "patients/p1/plans/q-1",
       scan: "patients/p1/scans/s-2",
       run: "simulations/w3",
     };
-    expect(writeAddress(whole)).toBe("#plan/fat?patient=p1&scan=s-2&run=w3");
+    expect(writeAddress(whole)).toBe("#plan/fat?patient=p1&plan=q-1&scan=s-2&run=w3");
     expect(parseAddress(writeAddress(whole))).toEqual(whole);
-    const empty = { page: "plan" as const, step: "face" as const, patient: "", scan: "", run: "" };
+    const empty = { page: "plan" as const, step: "face" as const, patient: "", plan: "", scan: "", run: "" };
     expect(parseAddress("")).toEqual(empty);
     expect(parseAddress(writeAddress(empty))).toEqual(empty);
     expect(parseAddress("#dashboard").page).toBe("dashboard");
   });
   it("leaves out what is no name", () => {
     expect(parseAddress("#plan/nowhere?patient=../a&scan=b&run=%2F")).toEqual(parseAddress("#plan/face"));
-    expect(parseAddress("#plan/fat?scan=b").scan).toBe("");
+    expect(parseAddress("#plan/fat?scan=b&plan=c")).toEqual(parseAddress("#plan/fat"));
   });
 });
 

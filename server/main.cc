@@ -67,8 +67,8 @@ absl::Status tidy_files(Store& store, const ScanFiles& scans, const CheckpointFi
 absl::StatusOr<OpenedStore> open_store(const DataDirectory& data, const Options& options) {
   absl::StatusOr<OpenedStore> opened = absl::UnknownError("");
   SpaceReserve reserve(data.reserve(), options.space_reserve_mb * 1'000'000);
-  const absl::Status done = reserve.spend([&opened, &data] {
-    opened = open_store_to_serve(data);
+  const absl::Status done = reserve.spend([&opened, &data, &options] {
+    opened = open_store_to_serve(data, options.database());
     return opened.status();
   });
   if (!done.ok()) return done;
@@ -143,13 +143,15 @@ absl::StatusOr<std::unique_ptr<MetricsServer>> serve_metrics(const Options& opti
   return server;
 }
 
-absl::Status serve_until_signal(const Options& options, const Backend& backend, GrpcServer& server) {
+absl::Status serve_until_signal(const Options& options, const std::string& store_name, const Backend& backend,
+                                GrpcServer& server) {
   if (!options.port_file.empty()) {
     if (auto written = write_port(options.port_file, server.port()); !written.ok()) return written;
   }
   const std::string where = absl::StrJoin(options.listen, ", ");
   const std::string port = server.port() > 0 ? absl::StrCat(" (port ", server.port(), ")") : "";
-  spdlog::info("lipofilld serves {}{} with {} workers, data in {}", where, port, options.workers, options.data);
+  spdlog::info("lipofilld serves {}{} with {} workers, data in {}{}", where, port, options.workers, options.data,
+               options.store.empty() ? "" : absl::StrCat(", records in ", store_name));
   if (!coupling::has_pinned_kernels()) {
     spdlog::warn(
         "OpenBLAS computes with {} kernels, which cannot be pinned here: results differ from those of other "
@@ -178,6 +180,7 @@ absl::Status serve(const Options& options) {
   if (!opened.ok()) return opened.status();
   if (!opened->remark.empty()) spdlog::warn("{}", opened->remark);
   Store& store = *opened->store;
+  const std::string& store_name = opened->store->database().name();
   auto files = ScanFiles::open(data->scans());
   if (!files.ok()) return files.status();
   auto checkpoints = CheckpointFiles::open(data->checkpoints());
@@ -204,7 +207,7 @@ absl::Status serve(const Options& options) {
   if (!server.ok()) return server.status();
   const auto metrics_server = serve_metrics(options, (*server)->door_figures(), backend);
   const absl::Status served =
-      metrics_server.ok() ? serve_until_signal(options, backend, **server) : metrics_server.status();
+      metrics_server.ok() ? serve_until_signal(options, store_name, backend, **server) : metrics_server.status();
   guard.emplace(options.drain_timeout_s);
   const bool drained =
       (*server)->drain(GrpcServer::Seconds(options.drain_delay_s), GrpcServer::Seconds(options.drain_timeout_s));
@@ -227,6 +230,11 @@ auto each_second(Tell tell) {
 /// Makes a backup or a restore in place of serving, with a line of progress a second. Returns the
 /// exit code.
 absl::StatusOr<int> copy_store(const Options& options) {
+  if (!options.store.empty()) {
+    return absl::FailedPreconditionError(
+        "a store in PostgreSQL is backed up by pg_dump and restored by pg_restore, or by the server's archive of its "
+        "log; copy the files in --data before that and after it. core/doc/operations.md has the steps");
+  }
   const auto progress = each_second([](const BackupReport& so_far) {
     spdlog::info("{} files, {} MB so far", so_far.files, so_far.bytes / 1'000'000);
   });
@@ -245,7 +253,7 @@ absl::StatusOr<int> copy_store(const Options& options) {
 
 /// Looks for damage in place of serving. Returns the exit code.
 absl::StatusOr<int> verify(const Options& options) {
-  const auto found = verify_store(options.data, each_second([](const Verification& so_far) {
+  const auto found = verify_store(options.data, options.database(), each_second([](const Verification& so_far) {
                                     spdlog::info("{} records, {} files, {} MB so far", so_far.records, so_far.files,
                                                  so_far.bytes / 1'000'000);
                                   }));

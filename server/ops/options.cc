@@ -11,6 +11,8 @@
 #include "absl/strings/str_cat.h"
 #include "server/ops/listen_address.h"
 #include "server/ops/security_options.h"
+#include "server/store/database_opening.h"
+#include "server/store/postgres_address.h"
 
 namespace lipofill::server {
 namespace {
@@ -176,6 +178,14 @@ uint64_t machine_memory_mb() {
   return static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGE_SIZE)) / 1'000'000;
 }
 
+/// What is given is not repeated: it may hold a password.
+void check_store(const Options& options, FieldViolations& violations) {
+  if (options.store.empty()) return;
+  if (!is_postgres(options.store)) return violations.add("store", "must begin with postgresql://");
+  const auto address = parse_postgres_address(options.store);
+  if (!address.ok()) violations.add("store", std::string(address.status().message()));
+}
+
 }  // namespace
 
 Options::Options()
@@ -200,6 +210,10 @@ std::vector<Setting> settings_of(Options& options) {
       {"metrics-listen", "HOST:PORT", "Serve Prometheus metrics over HTTP, path /metrics; default: nowhere",
        &options.metrics_listen},
       {"data", "DIR", "Directory of the store: patients, scans, models, results; made when missing", &options.data},
+      {"store", "ADDRESS",
+       "Database of records, postgresql://user@host:port/database, PostgreSQL 15; the files stay in --data. Its "
+       "password stands in the file of PGPASSFILE. Default: a file of SQLite in --data",
+       &options.store},
       {"workers", "N", "Threads that run simulations; default: the number of cores", &options.workers, 1, 256},
       {"max-simulations", "N",
        "Simulations that may be in memory without having ended; those that are parked do not count",
@@ -272,6 +286,7 @@ absl::Status check_options(const Options& options) {
                                                  options.drain_timeout_s));
   }
   if (options.data.empty()) violations.add("data", "is empty, must be a directory");
+  check_store(options, violations);
   if (!options.metrics_listen.empty()) {
     const auto address = parse_listen_address(options.metrics_listen);
     if (!address.ok() || address->is_unix()) {

@@ -28,6 +28,7 @@ struct Options {
   std::string port_file;
   std::string metrics_listen;  ///< empty: no metrics over HTTP
   std::string data = "lipofill-data";
+  std::string store;  ///< address of a database of PostgreSQL; empty: a file of SQLite in `data`
   int workers = 1;
   int max_simulations = 64;
   int max_simulations_per_tenant = 64;
@@ -52,6 +53,9 @@ struct Options {
   std::string log_format = "text";
   bool reflection = true;
   SecuritySettings security;
+
+  /// Where the database is, see open_database().
+  std::string database() const { return store.empty() ? data + "/lipofill.sqlite" : store; }
 };
 
 /// Every setting there is. A new one is a member of Options and an entry here: the file, the

@@ -15,7 +15,7 @@
 #include "server/store/data_directory.h"
 #include "server/store/durable_file.h"
 #include "server/store/kept_files.h"
-#include "server/store/sqlite.h"
+#include "server/store/sqlite_database.h"
 #include "server/store/store_opening.h"
 
 namespace lipofill::server {
@@ -159,21 +159,21 @@ absl::Status check_sums(const fs::path& root, const Sums& sums) {
 
 /// Checks records and files of a copy against what was written.
 absl::Status look_for_damage(const fs::path& root, const fs::path& path, BackupReport& report) {
-  const auto database = Database::open(path.string());
+  const auto database = SqliteDatabase::open(path.string());
   if (!database.ok()) return database.status();
   Verification found;
-  absl::Status looked = verify_records(**database, path.string(), found, [](const Verification&) {});
+  absl::Status looked = verify_records(**database, found, [](const Verification&) {});
   if (looked.ok()) looked = verify_files(**database, root, nullptr, found, [](const Verification&) {});
   report.damages = std::move(found.damages);
   return looked;
 }
 
 absl::Status fill(const fs::path& data, const fs::path& partial, const BackupProgress& progress, BackupReport& report) {
-  const auto reader = Database::open((data / kDatabase).string());
+  const auto reader = SqliteDatabase::open((data / kDatabase).string());
   if (!reader.ok()) return reader.status();
   Staging staging(data);
   {
-    const auto writer = Database::open((data / kDatabase).string());
+    const auto writer = SqliteDatabase::open((data / kDatabase).string());
     absl::Status linked = writer.status();
     if (linked.ok()) linked = link_files(**writer, **reader, data, staging);
     if (!linked.ok()) return linked;

@@ -7,7 +7,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "server/store/sqlite.h"
+#include "server/store/database.h"
 
 namespace lipofill::server {
 

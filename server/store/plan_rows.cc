@@ -64,7 +64,7 @@ absl::Status write_plan_revision(Database& database, const PlanRecord& plan) {
       DELETE FROM plan_revisions WHERE patient = ?1 AND plan = ?2 AND number < ?3 AND (number <= ?3 - ?4 OR number IN (
         SELECT number FROM (
           SELECT number, sum(length(content)) OVER (ORDER BY number DESC) AS total
-          FROM plan_revisions WHERE patient = ?1 AND plan = ?2) WHERE total > ?5)))");
+          FROM plan_revisions WHERE patient = ?1 AND plan = ?2) AS revisions WHERE total > ?5)))");
   done.Update(prune.bind(plan.patient, plan.id, plan.revision, kMaxPlanRevisions, kMaxPlanRevisionBytes).run());
   return done;
 }

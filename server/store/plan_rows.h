@@ -4,8 +4,8 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "server/store/database.h"
 #include "server/store/plan_records.h"
-#include "server/store/sqlite.h"
 
 namespace lipofill::server {
 

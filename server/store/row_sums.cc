@@ -9,9 +9,6 @@
 namespace lipofill::server {
 namespace {
 
-#define OF_PATIENT "'patients/' || CAST(patient AS TEXT) || "
-#define OF_SIMULATION "'simulations/' || CAST(simulation AS TEXT) || "
-
 /// The columns, each with a prefix: "NEW." makes "NEW.id, NEW.display_name".
 std::string with_prefix(const std::string& prefix, const std::string& columns) {
   return absl::StrCat(prefix, absl::StrReplaceAll(columns, {{", ", absl::StrCat(", ", prefix)}}));
@@ -39,22 +36,32 @@ CREATE TRIGGER $0_are_summed_anew AFTER UPDATE OF $1 ON $0
 }  // namespace
 
 const std::array<SummedTable, 13> kSummedTables = {{
-    {"patients", PATIENT_COLUMNS, "id", "'patients/' || CAST(id AS TEXT)"},
-    {"patient_labels", LABEL_COLUMNS, "patient, key", OF_PATIENT "' (a label)'"},
-    {"scans", SCAN_COLUMNS, "patient, id", OF_PATIENT "'/scans/' || CAST(id AS TEXT)"},
-    {"models", MODEL_COLUMNS, "patient, id", OF_PATIENT "'/models/' || CAST(id AS TEXT)"},
-    {"simulations", SIMULATION_COLUMNS, "id", "'simulations/' || CAST(id AS TEXT)"},
-    {"simulation_results", RESULT_COLUMNS, "simulation", OF_SIMULATION "' (its result)'"},
-    {"simulation_series", SERIES_COLUMNS, "simulation, last_step",
-     OF_SIMULATION "' (its series, steps ' || first_step || ' to ' || last_step || ')'"},
-    {"requests", REQUEST_COLUMNS, "tenant, method, id", "CAST(name AS TEXT) || ' (the request that made it)'"},
-    {"simulation_commands", COMMAND_COLUMNS, "simulation, number", OF_SIMULATION "' (its command ' || number || ')'"},
-    {"checkpoints", CHECKPOINT_COLUMNS, "simulation, id", OF_SIMULATION "'/checkpoints/' || CAST(id AS TEXT)"},
-    {"plans", PLAN_COLUMNS, "patient, id", OF_PATIENT "'/plans/' || CAST(id AS TEXT)", 6},
-    {"plan_revisions", PLAN_REVISION_COLUMNS, "patient, plan, number",
-     OF_PATIENT "'/plans/' || CAST(plan AS TEXT) || ' (its revision ' || number || ')'", 6},
-    {"plan_runs", PLAN_RUN_COLUMNS, "simulation", OF_PATIENT "'/plans/' || CAST(plan AS TEXT) || ' (a run)'", 6},
+    {"patients", PATIENT_COLUMNS, "id", "id", "patients/$0"},
+    {"patient_labels", LABEL_COLUMNS, "patient, key", "patient", "patients/$0 (a label)"},
+    {"scans", SCAN_COLUMNS, "patient, id", "patient, id", "patients/$0/scans/$1"},
+    {"models", MODEL_COLUMNS, "patient, id", "patient, id", "patients/$0/models/$1"},
+    {"simulations", SIMULATION_COLUMNS, "id", "id", "simulations/$0"},
+    {"simulation_results", RESULT_COLUMNS, "simulation", "simulation", "simulations/$0 (its result)"},
+    {"simulation_series", SERIES_COLUMNS, "simulation, last_step", "simulation, first_step, last_step",
+     "simulations/$0 (its series, steps $1 to $2)"},
+    {"requests", REQUEST_COLUMNS, "tenant, method, id", "name", "$0 (the request that made it)"},
+    {"simulation_commands", COMMAND_COLUMNS, "simulation, number", "simulation, number",
+     "simulations/$0 (its command $1)"},
+    {"checkpoints", CHECKPOINT_COLUMNS, "simulation, id", "simulation, id", "simulations/$0/checkpoints/$1"},
+    {"plans", PLAN_COLUMNS, "patient, id", "patient, id", "patients/$0/plans/$1", 6},
+    {"plan_revisions", PLAN_REVISION_COLUMNS, "patient, plan, number", "patient, plan, number",
+     "patients/$0/plans/$1 (its revision $2)", 6},
+    {"plan_runs", PLAN_RUN_COLUMNS, "simulation", "patient, plan", "patients/$0/plans/$1 (a run)", 6},
 }};
+
+std::string check_rows(const SummedTable& table, bool has_types) {
+  std::string is_whole = absl::StrCat("sum = row_sum('", table.name, "', ", table.columns, ")");
+  if (has_types) {
+    const std::string types = absl::StrReplaceAll(table.columns, {{", ", "), typeof("}});
+    absl::StrAppend(&is_whole, " AND 'text' NOT IN (typeof(", types, "))");
+  }
+  return absl::StrCat("SELECT ", is_whole, ", ", table.named, " FROM ", table.name, " ORDER BY ", table.key);
+}
 
 std::string make_row_sums(int version) {
   std::string statements;

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "server/store/sqlite.h"
 
 // The columns of every table that are summed, in the order of their sum. They are macros so that
 // statements are literals.
@@ -37,7 +36,8 @@ struct SummedTable {
   const char* name;
   const char* columns;  ///< those that are summed, with ", " between them
   const char* key;      ///< the columns that tell its rows apart
-  const char* title;    ///< an expression: the name of what a row is of
+  const char* named;    ///< columns that tell what a row is of
+  const char* title;    ///< the name of what a row is of, with $0 for the first of these
   int since = 5;        ///< version of the schema from which on it is there and summed
 };
 
@@ -49,6 +49,11 @@ extern const std::array<SummedTable, 13> kSummedTables;
 /// and refuse to change one that is not what was written, so that damage is never summed anew.
 /// Checked by tests/unit/server/store/row_sums_test.cc.
 std::string make_row_sums(int version);
+
+/// The statement that tells of every row of a table what it is of, by the columns of `named`, and
+/// whether it is what was written. Where values have types of their own, as in SQLite, a text is
+/// not: it has the sum of the same bytes, but nothing is written as text, and nothing finds one.
+std::string check_rows(const SummedTable& table, bool has_types);
 
 /// DATA_LOSS for the record of a resource that is not what was written.
 absl::Status damaged_record(const std::string& name);

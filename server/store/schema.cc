@@ -6,55 +6,12 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "server/store/row_sums.h"
+#include "server/store/schema_tables.h"
 
 namespace lipofill::server {
 namespace {
 
 constexpr int kApplicationId = 0x4c69706f;  // "Lipo"
-
-/// Ids are compared as bytes; requests hold the full name of what they made. Columns stand in the
-/// order in which the changes below bring them.
-constexpr char kSchema[] = R"(
-CREATE TABLE patients (
-  id BLOB PRIMARY KEY, display_name BLOB NOT NULL, create_time_us INTEGER NOT NULL,
-  tenant BLOB NOT NULL DEFAULT x'6c6f63616c') WITHOUT ROWID;
-CREATE TABLE patient_labels (
-  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, key BLOB NOT NULL, value BLOB NOT NULL,
-  PRIMARY KEY (patient, key)) WITHOUT ROWID;
-CREATE TABLE scans (
-  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, format INTEGER NOT NULL,
-  unit INTEGER NOT NULL, size_bytes INTEGER NOT NULL, sha256 BLOB NOT NULL, received_bytes INTEGER NOT NULL,
-  complete INTEGER NOT NULL, report BLOB NOT NULL, create_time_us INTEGER NOT NULL, PRIMARY KEY (patient, id));
-CREATE TABLE models (
-  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, scan BLOB NOT NULL,
-  content_hash BLOB NOT NULL, spec BLOB NOT NULL, report BLOB NOT NULL, create_time_us INTEGER NOT NULL,
-  bone_scan BLOB NOT NULL DEFAULT x'', PRIMARY KEY (patient, id));
-CREATE TABLE simulations (
-  id BLOB PRIMARY KEY, model BLOB NOT NULL, display_name BLOB NOT NULL, spec BLOB NOT NULL, state INTEGER NOT NULL,
-  reason BLOB NOT NULL, summary BLOB NOT NULL, create_time_us INTEGER NOT NULL, epoch INTEGER NOT NULL DEFAULT 0,
-  origin BLOB NOT NULL DEFAULT x'', tenant BLOB NOT NULL DEFAULT x'6c6f63616c');
-CREATE TABLE simulation_results (
-  simulation BLOB PRIMARY KEY REFERENCES simulations(id) ON DELETE CASCADE, meshes BLOB NOT NULL, frame BLOB NOT NULL);
-CREATE TABLE simulation_series (
-  simulation BLOB NOT NULL REFERENCES simulations(id) ON DELETE CASCADE, first_step INTEGER NOT NULL,
-  last_step INTEGER NOT NULL, rows BLOB NOT NULL, PRIMARY KEY (simulation, last_step));
-CREATE TABLE requests (
-  tenant BLOB NOT NULL, method BLOB NOT NULL, id BLOB NOT NULL, fingerprint BLOB NOT NULL, name BLOB NOT NULL,
-  PRIMARY KEY (tenant, method, id)) WITHOUT ROWID;
-CREATE INDEX requests_by_name ON requests(name);
-)";
-
-constexpr char kResumeTables[] = R"(
-CREATE TABLE simulation_commands (
-  simulation BLOB NOT NULL REFERENCES simulations(id) ON DELETE CASCADE, number INTEGER NOT NULL,
-  kind INTEGER NOT NULL, step INTEGER NOT NULL, payload BLOB NOT NULL, on_course INTEGER NOT NULL,
-  create_time_us INTEGER NOT NULL, PRIMARY KEY (simulation, number)) WITHOUT ROWID;
-CREATE TABLE checkpoints (
-  simulation BLOB NOT NULL REFERENCES simulations(id) ON DELETE CASCADE, id BLOB NOT NULL, kind INTEGER NOT NULL,
-  on_course INTEGER NOT NULL, step INTEGER NOT NULL, time_s REAL NOT NULL, wall_s REAL NOT NULL,
-  last_command INTEGER NOT NULL, size_bytes INTEGER NOT NULL, sha256 BLOB NOT NULL, state_hash BLOB NOT NULL,
-  create_time_us INTEGER NOT NULL, PRIMARY KEY (simulation, id));
-)";
 
 /// 2: the bone under a face.
 constexpr char kFromVersion1[] = "ALTER TABLE models ADD COLUMN bone_scan BLOB NOT NULL DEFAULT x'';";
@@ -80,18 +37,11 @@ ALTER TABLE requests_of_tenants RENAME TO requests;
 CREATE INDEX requests_by_name ON requests(name);
 )";
 
-constexpr char kTenantIndexes[] = R"(
-CREATE INDEX patients_by_tenant ON patients(tenant, id);
-CREATE INDEX simulations_by_tenant ON simulations(tenant, id);
-)";
-
 /// 5: the store has an id; rows have sums (make_row_sums()); files that may be removed are
-/// recorded: those being written, of which there is no record yet, and those whose record was
-/// deleted.
+/// recorded, in kStoreTables: those being written, of which there is no record yet, and those whose
+/// record was deleted.
 constexpr char kFromVersion4[] = R"(
-CREATE TABLE store (id BLOB NOT NULL, starts INTEGER NOT NULL);
 INSERT INTO store SELECT CAST(lower(hex(randomblob(16))) AS BLOB), 0;
-CREATE TABLE temporary_files (path BLOB PRIMARY KEY, is_draft INTEGER NOT NULL) WITHOUT ROWID;
 CREATE TRIGGER files_of_scans AFTER DELETE ON scans BEGIN
   INSERT OR REPLACE INTO temporary_files
     VALUES (CAST('scans/' || CAST(OLD.patient AS TEXT) || '/' || CAST(OLD.id AS TEXT) AS BLOB), 0); END;
@@ -101,23 +51,6 @@ CREATE TRIGGER files_of_checkpoints AFTER DELETE ON checkpoints BEGIN
 CREATE TRIGGER recorded_checkpoints AFTER INSERT ON checkpoints BEGIN
   DELETE FROM temporary_files
     WHERE path = CAST('checkpoints/' || CAST(NEW.simulation AS TEXT) || '/' || CAST(NEW.id AS TEXT) AS BLOB); END;
-)";
-
-/// 6: patients have plans, with what they were and what was run from them.
-constexpr char kFromVersion5[] = R"(
-CREATE TABLE plans (
-  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, revision INTEGER NOT NULL,
-  scan BLOB NOT NULL, target BLOB NOT NULL, content BLOB NOT NULL, create_time_us INTEGER NOT NULL,
-  update_time_us INTEGER NOT NULL, PRIMARY KEY (patient, id));
-CREATE TABLE plan_revisions (
-  patient BLOB NOT NULL, plan BLOB NOT NULL, number INTEGER NOT NULL, content BLOB NOT NULL, changes BLOB NOT NULL,
-  create_time_us INTEGER NOT NULL, PRIMARY KEY (patient, plan, number),
-  FOREIGN KEY (patient, plan) REFERENCES plans(patient, id) ON DELETE CASCADE);
-CREATE TABLE plan_runs (
-  simulation BLOB PRIMARY KEY REFERENCES simulations(id) ON DELETE CASCADE, patient BLOB NOT NULL,
-  plan BLOB NOT NULL, content_hash BLOB NOT NULL, create_time_us INTEGER NOT NULL,
-  FOREIGN KEY (patient, plan) REFERENCES plans(patient, id) ON DELETE CASCADE);
-CREATE INDEX plan_runs_by_plan ON plan_runs(patient, plan);
 )";
 
 absl::StatusOr<int64_t> read_pragma(Database& database, const char* sql) {
@@ -196,8 +129,8 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   const auto tables = read_pragma(database, "SELECT count(*) FROM sqlite_master");
   if (!tables.ok()) return tables.status();
   if (*version == 0 && *tables == 0)
-    return change_schema(
-        database, absl::StrCat(kSchema, kResumeTables, kTenantIndexes, kFromVersion4, kFromVersion5, make_row_sums(0)));
+    return change_schema(database, absl::StrCat(kSchema, kResumeTables, kTenantIndexes, kStoreTables, kFromVersion4,
+                                                kPlanTables, make_row_sums(0)));
   const auto application = read_pragma(database, "PRAGMA application_id");
   if (!application.ok()) return application.status();
   if (*application != kApplicationId) {
@@ -211,8 +144,8 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   if (*version < 2) changes += kFromVersion1;
   if (*version < 3) absl::StrAppend(&changes, kFromVersion2, kResumeTables);
   if (*version < 4) absl::StrAppend(&changes, kFromVersion3, kTenantIndexes);
-  if (*version < 5) changes += kFromVersion4;
-  if (*version < 6) absl::StrAppend(&changes, kFromVersion5, make_row_sums(static_cast<int>(*version)));
+  if (*version < 5) absl::StrAppend(&changes, kStoreTables, kFromVersion4);
+  if (*version < 6) absl::StrAppend(&changes, kPlanTables, make_row_sums(static_cast<int>(*version)));
   if (changes.empty()) return check_schema(database, path);
   return change_schema(database, changes);
 }

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "absl/status/status.h"
-#include "server/store/sqlite.h"
+#include "server/store/database.h"
 
 namespace lipofill::server {
 

@@ -7,6 +7,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "server/store/database_opening.h"
 #include "server/store/durable_file.h"
 
 namespace lipofill::server {
@@ -53,31 +54,43 @@ std::string other_parts(const DataDirectory& data) {
   return "";
 }
 
-bool has_bytes(const fs::path& path) {
+/// What is not as it should be with a file of SQLite, or with a database of PostgreSQL, that holds
+/// no store.
+std::string without_store(const std::string& place) {
   std::error_code error;
-  const auto size = fs::file_size(path, error);
-  return !error && size > 0;
+  if (is_postgres(place)) return "the database holds no store";
+  return absl::StrCat(place, fs::exists(place, error) ? " is empty" : " is missing");
 }
 
 /// A store is made only where there is nothing of one.
-absl::Status check_database_is_there(const DataDirectory& data) {
-  if (has_bytes(data.database())) return absl::OkStatus();
-  const std::string part = other_parts(data);
+absl::Status check_database_is_there(const DataDirectory& data, const std::string& place) {
+  const auto is_there = holds_store(place);
+  if (!is_there.ok()) return is_there.status();
+  const std::string part = *is_there ? "" : other_parts(data);
   if (part.empty()) return absl::OkStatus();
-  std::error_code error;
-  return absl::FailedPreconditionError(
-      absl::StrCat(data.database().string(), fs::exists(data.database(), error) ? " is empty" : " is missing",
-                   ", but there is ", part, ": put the database back from a backup; or move all of ",
-                   data.path().string(), " away to begin with an empty store"));
+  return absl::FailedPreconditionError(absl::StrCat(without_store(place), ", but there is ", part,
+                                                    ": put the database back from a backup; or move all of ",
+                                                    data.path().string(), " away to begin with an empty store"));
 }
 
-absl::Status check_same_store(const DataDirectory& data, const StoreIdentity& in_directory,
+absl::Status check_same_store(const DataDirectory& data, const std::string& database, const StoreIdentity& in_directory,
                               const StoreIdentity& in_database) {
   if (in_directory.id == in_database.id) return absl::OkStatus();
   return absl::FailedPreconditionError(absl::StrCat(
-      data.database().string(), " is the database of another data directory: its store is ", in_database.id,
-      ", that of ", data.path().string(), " is ", in_directory.id,
+      database, " is the database of another data directory: its store is ", in_database.id, ", that of ",
+      data.path().string(), " is ", in_directory.id,
       ". Put the right one in its place; or, if they do belong together, remove ", data.identity().string()));
+}
+
+/// A directory that says nothing may be a new one, or one that was not mounted: a database that is
+/// elsewhere and was served before has files somewhere.
+absl::Status check_not_lost(const DataDirectory& data, const Database& database, const StoreIdentity& in_database) {
+  if (!database.is_shared() || in_database.starts == 0) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat(
+      data.path().string(), " does not say that it belongs to the store ", in_database.id, " in ", database.name(),
+      ", which was served before: mount the directory that has its files; or, if this "
+      "is it, write the line \"",
+      in_database.id, " 0\" to ", data.identity().string()));
 }
 
 std::string remark_on_age(const StoreIdentity& in_directory, const StoreIdentity& in_database) {
@@ -97,20 +110,23 @@ absl::Status check_holds_no_store(const DataDirectory& data) {
       absl::StrCat(data.path().string(), " has a store: there is ", part, "; take an empty directory"));
 }
 
-absl::StatusOr<OpenedStore> open_store_to_serve(const DataDirectory& data) {
-  if (absl::Status there = check_database_is_there(data); !there.ok()) return there;
+absl::StatusOr<OpenedStore> open_store_to_serve(const DataDirectory& data, const std::string& place) {
+  if (absl::Status there = check_database_is_there(data, place); !there.ok()) return there;
   const auto in_directory = read_identity(data.identity());
   if (!in_directory.ok()) return in_directory.status();
-  auto store = SqliteStore::open(data.database().string());
+  auto store = SqlStore::open(place);
   if (!store.ok()) return store.status();
   const auto in_database = (*store)->read_identity();
   if (!in_database.ok()) return in_database.status();
+  const Database& database = (*store)->database();
   OpenedStore opened;
   StoreIdentity now = *in_database;
   if (in_directory->has_value()) {
-    if (absl::Status same = check_same_store(data, **in_directory, *in_database); !same.ok()) return same;
+    if (auto same = check_same_store(data, database.name(), **in_directory, now); !same.ok()) return same;
     opened.remark = remark_on_age(**in_directory, *in_database);
     now.starts = std::max(now.starts, (*in_directory)->starts);
+  } else if (absl::Status found = check_not_lost(data, database, now); !found.ok()) {
+    return found;
   }
   // Without room the start goes uncounted; there is no reason not to serve in that.
   ++now.starts;

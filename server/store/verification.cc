@@ -3,6 +3,8 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
+#include "server/store/database_opening.h"
 #include "server/store/kept_files.h"
 #include "server/store/row_sums.h"
 
@@ -10,7 +12,6 @@ namespace lipofill::server {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr char kDatabase[] = "lipofill.sqlite";
 constexpr int kFirstVersionWithSums = 5;
 constexpr uint64_t kProgressEvery = 256;
 
@@ -21,29 +22,33 @@ bool is_passing(const absl::Status& status) {
 }
 
 /// Damage at the level of pages and indexes.
-absl::Status verify_structure(Database& database, const std::string& path, Verification& verification) {
-  Query check(database, "PRAGMA integrity_check(20)");
-  while (check.next()) {
-    if (check.text(0) != "ok") verification.damages.push_back({path, check.text(0)});
+absl::Status verify_structure(Database& database, Verification& verification) {
+  const auto faults = database.find_faults();
+  if (is_passing(faults.status())) return faults.status();
+  if (!faults.ok()) verification.damages.push_back({database.name(), std::string(faults.status().message())});
+  for (const std::string& fault : faults.value_or(std::vector<std::string>())) {
+    verification.damages.push_back({database.name(), fault});
   }
-  if (check.status().ok() || is_passing(check.status())) return check.status();
-  verification.damages.push_back({path, std::string(check.status().message())});
   return absl::OkStatus();
+}
+
+/// The name of what a row that check_rows() found is of; the name itself may be what rotted.
+std::string title_of(const SummedTable& table, const Query& row) {
+  std::string title = table.title;
+  const std::vector<std::string> columns = absl::StrSplit(table.named, ", ");
+  for (size_t i = 0; i < columns.size(); ++i) {
+    title = absl::StrReplaceAll(title, {{absl::StrCat("$", i), row.text(static_cast<int>(i) + 1)}});
+  }
+  return absl::CHexEscape(title);
 }
 
 absl::Status verify_table(Database& database, const SummedTable& table, Verification& verification,
                           const VerificationProgress& progress) {
-  // A text has the sum of the same bytes, but nothing is written as text, and nothing finds one.
-  const std::string types = absl::StrReplaceAll(table.columns, {{", ", "), typeof("}});
-  const std::string sql =
-      absl::StrCat("SELECT ", table.title, ", sum = row_sum('", table.name, "', ", table.columns,
-                   ") AND 'text' NOT IN (typeof(", types, ")) FROM ", table.name, " ORDER BY ", table.key);
-  Query row(database, sql.c_str());
+  Query row(database, check_rows(table, !database.is_shared()).c_str());
   while (row.next()) {
     if (++verification.records % kProgressEvery == 0) progress(verification);
-    if (row.is_true(1)) continue;
-    // The name itself may be what rotted.
-    verification.damages.push_back({absl::CHexEscape(row.text(0)), "its record is not what was written"});
+    if (row.is_true(0)) continue;
+    verification.damages.push_back({title_of(table, row), "its record is not what was written"});
   }
   if (row.status().ok() || is_passing(row.status())) return row.status();
   verification.damages.push_back({table.name, std::string(row.status().message())});
@@ -64,14 +69,13 @@ StillKept ask_database(Database& database) {
 
 }  // namespace
 
-absl::Status verify_records(Database& database, const std::string& path, Verification& verification,
-                            const VerificationProgress& progress) {
-  if (absl::Status done = verify_structure(database, path, verification); !done.ok()) return done;
-  Query version(database, "PRAGMA user_version");
-  if (!version.next()) return version.status();
-  if (version.integer(0) < kFirstVersionWithSums) return absl::OkStatus();
+absl::Status verify_records(Database& database, Verification& verification, const VerificationProgress& progress) {
+  if (absl::Status done = verify_structure(database, verification); !done.ok()) return done;
+  const auto version = database.schema_version();
+  if (!version.ok()) return version.status();
+  if (*version < kFirstVersionWithSums) return absl::OkStatus();
   for (const SummedTable& table : kSummedTables) {
-    if (version.integer(0) < table.since) continue;
+    if (*version < table.since) continue;
     if (absl::Status done = verify_table(database, table, verification, progress); !done.ok()) return done;
   }
   return absl::OkStatus();
@@ -92,22 +96,16 @@ absl::Status verify_files(Database& database, const fs::path& root, const StillK
   return absl::OkStatus();
 }
 
-absl::StatusOr<Verification> verify_store(const fs::path& data, const VerificationProgress& progress) {
-  const fs::path path = data / kDatabase;
-  std::error_code error;
-  if (fs::file_size(path, error) == 0 || error) {
-    return absl::FailedPreconditionError(
-        absl::StrCat("there is no store in ", data.string(), ": ", path.string(), " is missing or empty"));
-  }
-  const auto database = Database::open(path.string());
+absl::StatusOr<Verification> verify_store(const fs::path& data, const std::string& place,
+                                          const VerificationProgress& progress) {
+  const auto database = open_database_to_look(place);
   if (!database.ok()) return database.status();
-  if (absl::Status set = (*database)->execute("PRAGMA query_only = ON"); !set.ok()) return set;
   Verification verification;
-  absl::Status done = verify_records(**database, path.string(), verification, progress);
+  absl::Status done = verify_records(**database, verification, progress);
   if (done.ok()) done = verify_files(**database, data, ask_database(**database), verification, progress);
   // A database that cannot be read at all is damaged; there is no more to be said of it.
   if (is_passing(done)) return done;
-  if (!done.ok()) verification.damages.push_back({path.string(), std::string(done.message())});
+  if (!done.ok()) verification.damages.push_back({(*database)->name(), std::string(done.message())});
   return verification;
 }
 

@@ -8,7 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "server/store/sqlite.h"
+#include "server/store/database.h"
 
 namespace lipofill::server {
 
@@ -33,8 +33,7 @@ using VerificationProgress = std::function<void(const Verification& so_far)>;
 
 /// Looks at every row of a database, whether it is what was written, and at the structure of the
 /// database. Rows of a version without sums pass.
-absl::Status verify_records(Database& database, const std::string& path, Verification& verification,
-                            const VerificationProgress& progress);
+absl::Status verify_records(Database& database, Verification& verification, const VerificationProgress& progress);
 
 /// Looks at the file of every complete scan and every checkpoint that the database speaks of, below
 /// a directory. Where one is not what it should be, `still_kept`, if any, says whether its record
@@ -43,10 +42,12 @@ using StillKept = std::function<bool(const std::string& path)>;
 absl::Status verify_files(Database& database, const std::filesystem::path& root, const StillKept& still_kept,
                           Verification& verification, const VerificationProgress& progress);
 
-/// Walks the whole of a store, whether a daemon serves it or not: records, series, results, scans
-/// and checkpoints. FAILED_PRECONDITION where there is no store. Checked by
+/// Walks the whole of a store, whether a daemon serves it or not: records, series and results in
+/// the database at `place` (see open_database()), scans and checkpoints in the data directory.
+/// FAILED_PRECONDITION where there is no store. Checked by
 /// tests/unit/server/store/verification_test.cc and
 /// tests/integration/service/silent_damage_test.cc.
-absl::StatusOr<Verification> verify_store(const std::filesystem::path& data, const VerificationProgress& progress);
+absl::StatusOr<Verification> verify_store(const std::filesystem::path& data, const std::string& place,
+                                          const VerificationProgress& progress);
 
 }  // namespace lipofill::server

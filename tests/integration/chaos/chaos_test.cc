@@ -14,7 +14,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/store/checkpoint_files.h"
 #include "server/store/scan_files.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
 #include "server/store/verification.h"
 #include "tests/integration/chaos/meddler.h"
 #include "tests/integration/chaos/planner.h"
@@ -46,7 +46,7 @@ v1::ModelSpec small_square() {
 /// Every file below the data directory belongs to a record, and every record's file is there and
 /// whole.
 void check_files(const std::string& data) {
-  const auto store = server::SqliteStore::open(data + "/lipofill.sqlite");
+  const auto store = server::SqlStore::open(data + "/lipofill.sqlite");
   ASSERT_TRUE(store.ok()) << store.status();
   const auto checkpoints = server::CheckpointFiles::open(data + "/checkpoints");
   const auto scans = server::ScanFiles::open(data + "/scans");

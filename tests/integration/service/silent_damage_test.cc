@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "server/store/sqlite.h"
+#include "server/store/sqlite_database.h"
 #include "tests/integration/service/run_fixture.h"
 
 namespace lipofill::testing {
@@ -49,7 +49,7 @@ class SilentDamageTest : public RunTest {
   }
   /// What the database has under a statement, as it is on the medium.
   std::string stored(const char* sql) {
-    const auto database_open = server::Database::open(database().string());
+    const auto database_open = server::SqliteDatabase::open(database().string());
     server::Query query(**database_open, sql);
     EXPECT_TRUE(query.next()) << sql;
     return query.text(0);

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "server/backend/parking.h"
-#include "server/store/sqlite.h"
+#include "server/store/sqlite_database.h"
 #include "server/wire/simulation_conversion.h"
 #include "tests/unit/server/backend/backend_fixture.h"
 
@@ -120,7 +120,7 @@ TEST_F(RecoveryTest, OneWhoseModelCannotBeBuiltWaitsAndComesBack) {
   ModelRecord model = *store_->get_model("anna", "m");
   const std::string hash = model.content_hash;
   const auto set_hash = [&](const std::string& text) {
-    const auto database = Database::open(directory_.file("db"));
+    const auto database = SqliteDatabase::open(directory_.file("db"));
     Query update(**database, "UPDATE models SET content_hash = ?");
     ASSERT_TRUE(update.bind(text).run().ok());
   };

@@ -9,7 +9,8 @@
 #include "server/store/data_directory.h"
 #include "server/store/durable_file.h"
 #include "server/store/scan_files.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
+#include "server/store/sqlite_database.h"
 #include "tests/unit/server/temporary_directory.h"
 
 namespace lipofill::server {
@@ -24,7 +25,7 @@ class BackupTest : public ::testing::Test {
     const auto scans = ScanFiles::open(data() / "scans");
     EXPECT_TRUE(scans->write("anna", "s1", 0, "the bytes of a scan").ok());
     EXPECT_TRUE(scans->write("anna", "orphan", 0, "of no record").ok());
-    auto store = SqliteStore::open((data() / "lipofill.sqlite").string());
+    auto store = SqlStore::open((data() / "lipofill.sqlite").string());
     EXPECT_TRUE(store.ok()) << store.status();
     EXPECT_TRUE((*store)->create_patient({"anna", "a-1", {}, 1}, {}).ok());
     for (const char* id : {"s1", "s2"}) {
@@ -49,7 +50,7 @@ class BackupTest : public ::testing::Test {
   }
 
   lipofill::testing::TemporaryDirectory directory_;
-  std::unique_ptr<SqliteStore> store_;  ///< open all the time, as a daemon's is
+  std::unique_ptr<SqlStore> store_;  ///< open all the time, as a daemon's is
 };
 
 TEST_F(BackupTest, RestoresWhatThereWasAndNoMore) {
@@ -65,7 +66,7 @@ TEST_F(BackupTest, RestoresWhatThereWasAndNoMore) {
   const auto restored = restore();
   ASSERT_TRUE(restored.ok()) << restored.status();
   EXPECT_EQ(restored->files, 2);
-  const auto store = SqliteStore::open((other() / "lipofill.sqlite").string());
+  const auto store = SqlStore::open((other() / "lipofill.sqlite").string());
   ASSERT_TRUE(store.ok()) << store.status();
   EXPECT_EQ((*store)->get_patient("anna")->display_name, "a-1");
   EXPECT_TRUE(absl::IsNotFound((*store)->get_patient("later").status()));
@@ -96,7 +97,7 @@ TEST_F(BackupTest, ADamagedBackupChangesNothing) {
 
 TEST_F(BackupTest, WhatIsDamagedIsNamedAndTheRestIsKept) {
   ASSERT_TRUE(ScanFiles::open(data() / "scans")->write("anna", "s1", 4, "B").ok());
-  ASSERT_TRUE((*Database::open((data() / "lipofill.sqlite").string()))
+  ASSERT_TRUE((*SqliteDatabase::open((data() / "lipofill.sqlite").string()))
                   ->execute("UPDATE scans SET sum = zeroblob(32) WHERE id = x'7332'")
                   .ok());
   const auto report = back_up();
@@ -109,7 +110,7 @@ TEST_F(BackupTest, WhatIsDamagedIsNamedAndTheRestIsKept) {
   const auto restored = restore();
   ASSERT_TRUE(restored.ok()) << restored.status();
   EXPECT_EQ(restored->damages.size(), 2u);
-  const auto store = SqliteStore::open((other() / "lipofill.sqlite").string());
+  const auto store = SqlStore::open((other() / "lipofill.sqlite").string());
   EXPECT_TRUE((*store)->get_patient("anna").ok());
   EXPECT_TRUE(absl::IsDataLoss((*store)->get_scan("anna", "s2").status()));
 }

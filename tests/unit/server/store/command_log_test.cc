@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_cat.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
+#include "tests/unit/server/store/store_kinds.h"
 #include "tests/unit/server/temporary_directory.h"
 
 namespace lipofill::server {
@@ -13,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-class CommandLogTest : public ::testing::Test {
+class CommandLogTest : public ::testing::TestWithParam<StoreKind> {
  protected:
   CommandLogTest() {
     reopen();
@@ -25,7 +26,7 @@ class CommandLogTest : public ::testing::Test {
   }
   void reopen() {
     store_ = nullptr;
-    auto store = SqliteStore::open(directory_.file("db"));
+    auto store = SqlStore::open(place_);
     ASSERT_TRUE(store.ok()) << store.status();
     store_ = *std::move(store);
   }
@@ -65,10 +66,11 @@ class CommandLogTest : public ::testing::Test {
   }
 
   lipofill::testing::TemporaryDirectory directory_;
-  std::unique_ptr<SqliteStore> store_;
+  const std::string place_ = make_place(GetParam(), directory_);
+  std::unique_ptr<SqlStore> store_;
 };
 
-TEST_F(CommandLogTest, KeepsCommandsInOrderWithTheStateAndThePlanTheyMake) {
+TEST_P(CommandLogTest, KeepsCommandsInOrderWithTheStateAndThePlanTheyMake) {
   ASSERT_TRUE(*append(CommandKind::kStart, 0));
   ASSERT_TRUE(*append(CommandKind::kInject, 7, "more fat", "plan with more"));
   EXPECT_EQ(store_->get_simulation("x")->state, SimulationState::kRunning);
@@ -83,7 +85,7 @@ TEST_F(CommandLogTest, KeepsCommandsInOrderWithTheStateAndThePlanTheyMake) {
   EXPECT_EQ(store_->get_simulation("x")->state, SimulationState::kPaused);
 }
 
-TEST_F(CommandLogTest, ARepeatedRequestChangesNothing) {
+TEST_P(CommandLogTest, ARepeatedRequestChangesNothing) {
   const RequestKey key{"Inject", "r1", "f1"};
   ASSERT_TRUE(*append(CommandKind::kInject, 7, "fat", "plan 2", key));
   reopen();
@@ -93,7 +95,7 @@ TEST_F(CommandLogTest, ARepeatedRequestChangesNothing) {
   EXPECT_TRUE(absl::IsInvalidArgument(append(CommandKind::kInject, 8, "", "", {"Inject", "r1", "f2"}).status()));
 }
 
-TEST_F(CommandLogTest, NothingIsKeptOfASimulationThatIsGone) {
+TEST_P(CommandLogTest, NothingIsKeptOfASimulationThatIsGone) {
   ASSERT_TRUE(*append(CommandKind::kStart, 0));
   ASSERT_TRUE(checkpoint("c1", 3).ok());
   ASSERT_TRUE(store_->delete_simulation("x").ok());
@@ -104,7 +106,7 @@ TEST_F(CommandLogTest, NothingIsKeptOfASimulationThatIsGone) {
   EXPECT_EQ(*store_->count_checkpoint_bytes(), 0u);
 }
 
-TEST_F(CommandLogTest, ACheckpointKnowsWhichCommandsAreInIt) {
+TEST_P(CommandLogTest, ACheckpointKnowsWhichCommandsAreInIt) {
   ASSERT_TRUE(*append(CommandKind::kStart, 0));
   ASSERT_TRUE(*append(CommandKind::kInject, 7));
   ASSERT_TRUE(checkpoint("c1", 10, CheckpointKind::kAsked, SeriesChunk{1, 10, "rows"}).ok());
@@ -119,7 +121,7 @@ TEST_F(CommandLogTest, ACheckpointKnowsWhichCommandsAreInIt) {
   EXPECT_TRUE(absl::IsAlreadyExists(checkpoint("c1", 11).status()));
 }
 
-TEST_F(CommandLogTest, KeepsTheNewestFew) {
+TEST_P(CommandLogTest, KeepsTheNewestFew) {
   for (uint64_t i = 1; i <= 5; ++i) ASSERT_TRUE(checkpoint(absl::StrCat("c", i), i).ok());
   ASSERT_TRUE(checkpoint("asked", 1, CheckpointKind::kAsked).ok());
   ASSERT_TRUE(store_->prune_checkpoints("x", 2).ok());
@@ -135,7 +137,7 @@ TEST_F(CommandLogTest, KeepsTheNewestFew) {
   EXPECT_THAT(checkpoints(), ElementsAre("asked"));
 }
 
-TEST_F(CommandLogTest, ARestoreTakesWhatCameAfterOffCourse) {
+TEST_P(CommandLogTest, ARestoreTakesWhatCameAfterOffCourse) {
   ASSERT_TRUE(*append(CommandKind::kStart, 0));
   ASSERT_TRUE(checkpoint("c1", 5, CheckpointKind::kAutomatic, SeriesChunk{1, 5, "to 5"}).ok());
   ASSERT_TRUE(*append(CommandKind::kInject, 5, "a", "plan a"));
@@ -164,7 +166,7 @@ TEST_F(CommandLogTest, ARestoreTakesWhatCameAfterOffCourse) {
   EXPECT_EQ(store_->get_simulation("x")->state, SimulationState::kPaused);
 }
 
-TEST_F(CommandLogTest, HoldsOnToWhatASimulationBeganFrom) {
+TEST_P(CommandLogTest, HoldsOnToWhatASimulationBeganFrom) {
   SimulationRecord made;
   made.id = "y";
   made.origin = "simulations/x/checkpoints/c1";
@@ -187,7 +189,7 @@ TEST_F(CommandLogTest, HoldsOnToWhatASimulationBeganFrom) {
   EXPECT_TRUE(store_->delete_checkpoint("y", "origin").ok());
 }
 
-TEST_F(CommandLogTest, EpochsOnlyRise) {
+TEST_P(CommandLogTest, EpochsOnlyRise) {
   SimulationRecord made;
   made.id = "made";
   made.create_time_us = 5000;
@@ -200,6 +202,9 @@ TEST_F(CommandLogTest, EpochsOnlyRise) {
   EXPECT_EQ(*store_->begin_epoch("x", 2000), 2000u);
   EXPECT_TRUE(absl::IsNotFound(store_->begin_epoch("none", 1).status()));
 }
+
+INSTANTIATE_TEST_SUITE_P(EveryKind, CommandLogTest, ::testing::Values(StoreKind::kSqlite, StoreKind::kPostgres),
+                         kind_name);
 
 }  // namespace
 }  // namespace lipofill::server

@@ -9,18 +9,19 @@
 #include "core/base/hash.h"
 #include "server/store/checkpoint_files.h"
 #include "server/store/scan_files.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
 
 namespace lipofill::server {
 
 /// Makes a store in a data directory that has one of everything: a patient with a label, a scan
 /// with its file, a model, a simulation with a command, a checkpoint, series and result, a plan
-/// that it was made from, and a request.
-inline std::unique_ptr<SqliteStore> make_full_store(const std::filesystem::path& data) {
+/// that it was made from, and a request. The database is a file there, unless another place is
+/// given.
+inline std::unique_ptr<SqlStore> make_full_store(const std::filesystem::path& data, const std::string& place = "") {
   std::filesystem::create_directories(data);
-  auto opened = SqliteStore::open((data / "lipofill.sqlite").string());
+  auto opened = SqlStore::open(place.empty() ? (data / "lipofill.sqlite").string() : place);
   EXPECT_TRUE(opened.ok()) << opened.status();
-  std::unique_ptr<SqliteStore> store = *std::move(opened);
+  std::unique_ptr<SqlStore> store = *std::move(opened);
   EXPECT_TRUE(store->create_patient({"anna", "the display name", {{"side", "left"}}, 1}, {"Create", "r1", "f"}).ok());
   const std::string bytes = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   Hasher hasher;

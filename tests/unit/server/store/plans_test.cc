@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_cat.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
 #include "server/store/verification.h"
 #include "tests/unit/server/temporary_directory.h"
 
@@ -27,7 +27,7 @@ class PlansTest : public ::testing::Test {
   }
   void reopen() {
     store_ = nullptr;
-    auto store = SqliteStore::open(directory_.file("lipofill.sqlite"));
+    auto store = SqlStore::open(directory_.file("lipofill.sqlite"));
     ASSERT_TRUE(store.ok()) << store.status();
     store_ = *std::move(store);
   }
@@ -66,7 +66,7 @@ class PlansTest : public ::testing::Test {
   }
 
   lipofill::testing::TemporaryDirectory directory_;
-  std::unique_ptr<SqliteStore> store_;
+  std::unique_ptr<SqlStore> store_;
   int64_t now_us_ = 100;
 };
 
@@ -206,7 +206,7 @@ TEST_F(PlansTest, GoWithTheirPatientAndHoldItUntilThen) {
   ASSERT_TRUE(store_->delete_patient("anna", true).ok());
   EXPECT_TRUE(absl::IsNotFound(store_->get_plan("anna", "q").status()));
   store_ = nullptr;
-  const auto found = verify_store(directory_.path(), [](const Verification&) {});
+  const auto found = verify_store(directory_.path(), directory_.file("lipofill.sqlite"), [](const Verification&) {});
   ASSERT_TRUE(found.ok()) << found.status();
   EXPECT_EQ(found->records, 2u) << "berta and her scan";
 }

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "absl/strings/str_cat.h"
+#include "server/store/sqlite_database.h"
 #include "server/store/verification.h"
 #include "tests/unit/server/store/full_store.h"
 #include "tests/unit/server/temporary_directory.h"
@@ -80,7 +81,7 @@ class RowSumsTest : public ::testing::Test {
   std::string path() const { return (data_ / "lipofill.sqlite").string(); }
   /// Changes a row behind the store's back: its sum stays, and so do the triggers.
   void tamper(const std::string& table, const std::string& statement) {
-    const auto database = Database::open(path());
+    const auto database = SqliteDatabase::open(path());
     std::vector<std::string> triggers;
     Query query(**database,
                 "SELECT name, sql FROM sqlite_master WHERE type = 'trigger' AND CAST(tbl_name AS BLOB) = ? AND "
@@ -100,7 +101,7 @@ class RowSumsTest : public ::testing::Test {
 };
 
 TEST_F(RowSumsTest, EveryRowIsSummedAndEveryColumnBut) {
-  const auto database = Database::open(path());
+  const auto database = SqliteDatabase::open(path());
   for (const SummedTable& table : kSummedTables) {
     Query rows(**database, absl::StrCat("SELECT count(*), sum(length(sum)) FROM ", table.name).c_str());
     ASSERT_TRUE(rows.next());
@@ -119,9 +120,9 @@ TEST_F(RowSumsTest, EveryRowIsSummedAndEveryColumnBut) {
 }
 
 TEST_F(RowSumsTest, AnyColumnThatWasChangedIsDamageWithItsName) {
-  const std::unique_ptr<Store> before = *SqliteStore::open(path());
+  const std::unique_ptr<Store> before = *SqlStore::open(path());
   for (const SummedTable& table : kSummedTables) {
-    const auto database = Database::open(path());
+    const auto database = SqliteDatabase::open(path());
     Query names(**database,
                 absl::StrCat("SELECT name FROM pragma_table_info('", table.name, "') WHERE pk = 0").c_str());
     std::vector<std::string> columns;
@@ -131,7 +132,7 @@ TEST_F(RowSumsTest, AnyColumnThatWasChangedIsDamageWithItsName) {
       const std::string copy = directory_.file("copy");
       std::filesystem::remove(copy);
       ASSERT_TRUE((*database)->copy_to(copy).ok());
-      const auto copied = Database::open(copy);
+      const auto copied = SqliteDatabase::open(copy);
       const std::string change =
           absl::StrCat("DROP TRIGGER ", table.name, "_are_checked; DROP TRIGGER ", table.name,
                        "_are_summed_anew; UPDATE ", table.name, " SET ", column, " = CASE typeof(", column,
@@ -139,7 +140,7 @@ TEST_F(RowSumsTest, AnyColumnThatWasChangedIsDamageWithItsName) {
       ASSERT_TRUE((*copied)->execute("PRAGMA foreign_keys = OFF").ok());
       ASSERT_TRUE((*copied)->execute(change.c_str()).ok()) << change;
       Verification found;
-      ASSERT_TRUE(verify_records(**copied, copy, found, [](const Verification&) {}).ok());
+      ASSERT_TRUE(verify_records(**copied, found, [](const Verification&) {}).ok());
       EXPECT_EQ(found.damages.size(), 1u) << table.name << "." << column;
     }
   }
@@ -147,7 +148,7 @@ TEST_F(RowSumsTest, AnyColumnThatWasChangedIsDamageWithItsName) {
 
 TEST_F(RowSumsTest, ADamagedRowIsNamedWhenItIsReadAndTheRestServes) {
   tamper("models", "UPDATE models SET spec = CAST('the lundmarks of a model' AS BLOB)");
-  const auto store = SqliteStore::open(path());
+  const auto store = SqlStore::open(path());
   const auto damaged = (*store)->get_model("anna", "model-1");
   EXPECT_TRUE(absl::IsDataLoss(damaged.status())) << damaged.status();
   EXPECT_THAT(std::string(damaged.status().message()), HasSubstr("patients/anna/models/model-1 is damaged"));
@@ -160,9 +161,9 @@ TEST_F(RowSumsTest, ADamagedRowIsNamedWhenItIsReadAndTheRestServes) {
 }
 
 TEST_F(RowSumsTest, DamageIsNeverSummedAnew) {
-  const auto database = Database::open(path());
+  const auto database = SqliteDatabase::open(path());
   ASSERT_TRUE((*database)->execute("UPDATE simulations SET sum = zeroblob(32)").ok());
-  const auto store = SqliteStore::open(path());
+  const auto store = SqlStore::open(path());
   EXPECT_TRUE(absl::IsDataLoss((*store)->set_simulation_state("sim-1", SimulationState::kFailed, "x")));
   EXPECT_TRUE(absl::IsDataLoss((*store)->get_simulation("sim-1").status()));
 }
@@ -183,7 +184,7 @@ TEST_F(RowSumsTest, AnIndexThatRottedIsMadeAgain) {
     }
     ASSERT_EQ(changed, 1) << "the index by tenant";
   }
-  const auto store = SqliteStore::open(path());
+  const auto store = SqlStore::open(path());
   ASSERT_TRUE(store.ok()) << store.status();
   EXPECT_EQ((*store)->list_simulations({}, {})->size(), 1u);
 }
@@ -191,7 +192,7 @@ TEST_F(RowSumsTest, AnIndexThatRottedIsMadeAgain) {
 // At seeded places all over the file; the structure of the database included.
 TEST_F(RowSumsTest, NoFlippedBitOfTheDatabaseIsServedAsTruth) {
   constexpr int kFlips = 1500;
-  const Answers expected(**SqliteStore::open(path()));
+  const Answers expected(**SqlStore::open(path()));
   std::ifstream in(path(), std::ios::binary);
   const std::string whole((std::istreambuf_iterator<char>(in)), {});
   std::mt19937_64 random(7);
@@ -207,7 +208,7 @@ TEST_F(RowSumsTest, NoFlippedBitOfTheDatabaseIsServedAsTruth) {
     bytes[at] = static_cast<char>(bytes[at] ^ (1 << (random() % 8)));
     std::ofstream(copy, std::ios::binary | std::ios::trunc)
         .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    auto store = SqliteStore::open(copy);
+    auto store = SqlStore::open(copy);
     if (!store.ok()) {
       ++refused;
       continue;
@@ -217,7 +218,7 @@ TEST_F(RowSumsTest, NoFlippedBitOfTheDatabaseIsServedAsTruth) {
     if (answers == expected) continue;
     ++erred;
     Verification found;
-    ASSERT_TRUE(verify_records(**Database::open(copy), copy, found, [](const Verification&) {}).ok());
+    ASSERT_TRUE(verify_records(**SqliteDatabase::open(copy), found, [](const Verification&) {}).ok());
     ASSERT_FALSE(found.is_whole()) << "byte " << at << " is missed:\n" << answers.text();
   }
   std::cout << kFlips << " flips: " << refused << " refused at the start, " << erred

@@ -11,7 +11,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/store/row_sums.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
+#include "server/store/sqlite_database.h"
 #include "tests/unit/server/temporary_directory.h"
 
 namespace lipofill::server {
@@ -128,7 +129,7 @@ constexpr char kRequestOfTenant[] = "INSERT INTO requests VALUES (x'6c6f63616c',
 
 /// Every column of every table and every index, as the database sees them.
 std::set<std::string> shape_of(const std::string& path) {
-  const auto database = Database::open(path);
+  const auto database = SqliteDatabase::open(path);
   EXPECT_TRUE(database.ok());
   std::set<std::string> shape;
   Query tables(**database,
@@ -146,7 +147,7 @@ std::set<std::string> shape_of(const std::string& path) {
 class SchemaTest : public ::testing::TestWithParam<int> {
  protected:
   void make(int version) {
-    const auto database = Database::open(path_);
+    const auto database = SqliteDatabase::open(path_);
     ASSERT_TRUE(database.ok());
     ASSERT_TRUE((*database)->execute(kVersion1).ok());
     ASSERT_TRUE((*database)->execute(version >= 2 ? kVersion2 : "").ok());
@@ -164,7 +165,7 @@ class SchemaTest : public ::testing::TestWithParam<int> {
 TEST_P(SchemaTest, IsBroughtUpToDateWithAllItHeld) {
   make(GetParam());
   for (int round = 0; round < 2; ++round) {
-    const auto store = SqliteStore::open(path_);
+    const auto store = SqlStore::open(path_);
     ASSERT_TRUE(store.ok()) << store.status();
     EXPECT_EQ((*store)->get_patient("a")->labels.at("k"), "v");
     EXPECT_EQ((*store)->get_scan("a", "s")->size_bytes, 5'000'000'000u);
@@ -198,17 +199,17 @@ TEST_P(SchemaTest, IsBroughtUpToDateWithAllItHeld) {
 
 TEST_P(SchemaTest, EndsInTheShapeOfANewOne) {
   make(GetParam());
-  ASSERT_TRUE(SqliteStore::open(path_).ok());
-  ASSERT_TRUE(SqliteStore::open(directory_.file("new")).ok());
+  ASSERT_TRUE(SqlStore::open(path_).ok());
+  ASSERT_TRUE(SqlStore::open(directory_.file("new")).ok());
   EXPECT_EQ(shape_of(path_), shape_of(directory_.file("new")));
 }
 
 TEST_P(SchemaTest, StaysAsItIsWhenTheChangeFails) {
   make(GetParam());
   // One of the last changes finds its name taken.
-  ASSERT_TRUE((*Database::open(path_))->execute("CREATE TABLE plan_runs (x)").ok());
+  ASSERT_TRUE((*SqliteDatabase::open(path_))->execute("CREATE TABLE plan_runs (x)").ok());
   const std::set<std::string> before = shape_of(path_);
-  EXPECT_FALSE(SqliteStore::open(path_).ok());
+  EXPECT_FALSE(SqlStore::open(path_).ok());
   EXPECT_EQ(shape_of(path_), before);
 }
 
@@ -218,7 +219,7 @@ TEST(DamagedDatabase, IsRefusedWithWhatToDo) {
   lipofill::testing::TemporaryDirectory directory;
   const std::string path = directory.file("db");
   {
-    const auto store = SqliteStore::open(path);
+    const auto store = SqlStore::open(path);
     ASSERT_TRUE(store.ok());
     for (int i = 0; i < 200; ++i) {
       ASSERT_TRUE((*store)->create_patient({absl::StrCat("patient-", i), std::string(60, 'n'), {}, i}, {}).ok());
@@ -235,7 +236,7 @@ TEST(DamagedDatabase, IsRefusedWithWhatToDo) {
       file.seekp(static_cast<std::streamoff>(page * 4096));
       file << std::string(4096, '\xa5');
     }
-    const auto store = SqliteStore::open(copy);
+    const auto store = SqlStore::open(copy);
     if (store.ok()) continue;
     ++refused;
     EXPECT_TRUE(absl::IsDataLoss(store.status())) << page << ": " << store.status();

@@ -7,6 +7,7 @@
 
 #include "server/store/durable_file.h"
 #include "tests/unit/server/store/full_store.h"
+#include "tests/unit/server/store/store_kinds.h"
 #include "tests/unit/server/temporary_directory.h"
 
 namespace lipofill::server {
@@ -20,7 +21,7 @@ class StoreOpeningTest : public ::testing::Test {
   absl::StatusOr<OpenedStore> open(const fs::path& data) {
     const auto directory = DataDirectory::open(data);
     if (!directory.ok()) return directory.status();
-    return open_store_to_serve(*directory);
+    return open_store_to_serve(*directory, directory->database().string());
   }
   void expect_refused(const std::string& why) {
     const auto opened = open(data_);
@@ -84,6 +85,49 @@ TEST_F(StoreOpeningTest, AnIdThatCannotBeReadIsNoReasonToGuess) {
   ASSERT_TRUE(open(data_).ok());
   std::ofstream(data_ / "store-id") << "nonsense";
   expect_refused("does not say which store this is");
+}
+
+/// The same with a database of PostgreSQL, which any directory may name.
+class SharedStoreOpeningTest : public ::testing::Test {
+ protected:
+  absl::StatusOr<OpenedStore> open(const fs::path& data, const std::string& place) {
+    const auto directory = DataDirectory::open(data);
+    if (!directory.ok()) return directory.status();
+    return open_store_to_serve(*directory, place);
+  }
+  void expect_refused(const fs::path& data, const std::string& place, const std::string& why) {
+    const auto opened = open(data, place);
+    EXPECT_TRUE(absl::IsFailedPrecondition(opened.status())) << opened.status();
+    EXPECT_THAT(std::string(opened.status().message()), HasSubstr(why));
+  }
+
+  lipofill::testing::TemporaryDirectory directory_;
+  const fs::path data_ = directory_.path() / "data";
+  const std::string place_ = make_place(StoreKind::kPostgres, directory_);
+};
+
+TEST_F(SharedStoreOpeningTest, DirectoryAndDatabaseBelongTogether) {
+  ASSERT_TRUE(open(data_, place_).ok());
+  ASSERT_TRUE(open(data_, place_).ok());
+  const fs::path other = directory_.path() / "other";
+  const std::string other_place = make_place(StoreKind::kPostgres, directory_);
+  ASSERT_TRUE(open(other, other_place).ok());
+  expect_refused(data_, other_place, "is the database of another data directory");
+  expect_refused(directory_.path() / "new", place_, "mount the directory that has its files");
+}
+
+TEST_F(SharedStoreOpeningTest, AStoreIsNotMadeAnewBesideTheFilesOfOne) {
+  ASSERT_TRUE(open(data_, place_).ok());
+  expect_refused(data_, make_place(StoreKind::kPostgres, directory_), "the database holds no store, but there is");
+}
+
+TEST_F(SharedStoreOpeningTest, ADirectoryIsGivenToAStoreByHand) {
+  const auto first = open(data_, place_);
+  ASSERT_TRUE(first.ok()) << first.status();
+  const fs::path copy = directory_.path() / "copy";
+  fs::create_directories(copy);
+  std::ofstream(copy / "store-id") << first->store->read_identity()->id << " 0\n";
+  EXPECT_TRUE(open(copy, place_).ok());
 }
 
 }  // namespace

@@ -6,7 +6,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "server/store/data_directory.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
+#include "server/store/sqlite_database.h"
+#include "tests/unit/server/store/store_kinds.h"
 #include "tests/unit/server/temporary_directory.h"
 
 namespace lipofill::server {
@@ -15,13 +17,13 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-class StoreTest : public ::testing::Test {
+class StoreTest : public ::testing::TestWithParam<StoreKind> {
  protected:
   StoreTest() { reopen(); }
 
   void reopen() {
     store_ = nullptr;
-    auto store = SqliteStore::open(directory_.file("db"));
+    auto store = SqlStore::open(place_);
     ASSERT_TRUE(store.ok()) << store.status();
     store_ = *std::move(store);
   }
@@ -42,10 +44,11 @@ class StoreTest : public ::testing::Test {
   }
 
   lipofill::testing::TemporaryDirectory directory_;
-  std::unique_ptr<SqliteStore> store_;
+  const std::string place_ = make_place(GetParam(), directory_);
+  std::unique_ptr<SqlStore> store_;
 };
 
-TEST_F(StoreTest, KeepsPatientsAcrossReopening) {
+TEST_P(StoreTest, KeepsPatientsAcrossReopening) {
   ASSERT_TRUE(store_->create_patient({"anna", "a-1", {{"side", "left"}, {"arm", "b"}}, 42}, {}).ok());
   reopen();
   const auto patient = store_->get_patient("anna");
@@ -55,7 +58,7 @@ TEST_F(StoreTest, KeepsPatientsAcrossReopening) {
   EXPECT_EQ(patient->create_time_us, 42);
 }
 
-TEST_F(StoreTest, UpdatesAndDeletesPatients) {
+TEST_P(StoreTest, UpdatesAndDeletesPatients) {
   add_patient("anna");
   const auto replace = [](const std::string& name, const std::map<std::string, std::string>& labels) {
     return [=](PatientRecord present) -> absl::StatusOr<PatientRecord> {
@@ -74,7 +77,7 @@ TEST_F(StoreTest, UpdatesAndDeletesPatients) {
   EXPECT_TRUE(absl::IsNotFound(store_->update_patient("anna", replace("", {})).status()));
 }
 
-TEST_F(StoreTest, LeavesAPatientWhoseChangeIsRefused) {
+TEST_P(StoreTest, LeavesAPatientWhoseChangeIsRefused) {
   add_patient("anna");
   const absl::Status refusal = absl::AbortedError("no");
   EXPECT_EQ(store_->update_patient("anna", [&](const PatientRecord&) { return refusal; }).status(), refusal);
@@ -82,14 +85,14 @@ TEST_F(StoreTest, LeavesAPatientWhoseChangeIsRefused) {
   EXPECT_TRUE(store_->get_patient("anna").ok());
 }
 
-TEST_F(StoreTest, RefusesASecondPatientOfTheSameId) {
+TEST_P(StoreTest, RefusesASecondPatientOfTheSameId) {
   add_patient("anna");
   const auto again = store_->create_patient({"anna", "other", {}, 1}, {});
   EXPECT_TRUE(absl::IsAlreadyExists(again.status())) << again.status();
   EXPECT_EQ(store_->get_patient("anna")->display_name, "");
 }
 
-TEST_F(StoreTest, ListsInPages) {
+TEST_P(StoreTest, ListsInPages) {
   for (const char* id : {"c", "a", "b", "d"}) add_patient(id);
   std::vector<std::string> ids;
   const auto patients = store_->list_patients({}, {"a", 2});
@@ -98,7 +101,7 @@ TEST_F(StoreTest, ListsInPages) {
   EXPECT_THAT(ids, ElementsAre("b", "c"));
 }
 
-TEST_F(StoreTest, ListsWhatAScopeHas) {
+TEST_P(StoreTest, ListsWhatAScopeHas) {
   ASSERT_TRUE(store_->create_patient({"a", "", {}, 1, "ward"}, {}).ok());
   ASSERT_TRUE(store_->create_patient({"b", "", {}, 1, "ward"}, {}).ok());
   ASSERT_TRUE(store_->create_patient({"c", "", {}, 1, "clinic"}, {}).ok());
@@ -129,7 +132,7 @@ TEST_F(StoreTest, ListsWhatAScopeHas) {
   EXPECT_TRUE(absl::IsNotFound(store_->owner_of_simulation("x").status()));
 }
 
-TEST_F(StoreTest, ARequestIdIsATenantsOwn) {
+TEST_P(StoreTest, ARequestIdIsATenantsOwn) {
   const RequestKey ours{"CreatePatient", "r1", "f1", "ward"};
   const RequestKey theirs{"CreatePatient", "r1", "f1", "clinic"};
   ASSERT_TRUE(store_->create_patient({"a", "", {}, 1, "ward"}, ours).ok());
@@ -139,7 +142,7 @@ TEST_F(StoreTest, ARequestIdIsATenantsOwn) {
   EXPECT_EQ(**store_->find_request(ours), "patients/a");
 }
 
-TEST_F(StoreTest, RepeatsARequestOnlyOnce) {
+TEST_P(StoreTest, RepeatsARequestOnlyOnce) {
   const RequestKey key{"CreatePatient", "r1", "f1"};
   ASSERT_TRUE(store_->create_patient({"anna", "first", {}, 1}, key).ok());
   reopen();
@@ -151,7 +154,7 @@ TEST_F(StoreTest, RepeatsARequestOnlyOnce) {
   EXPECT_TRUE(absl::IsInvalidArgument(other.status())) << other.status();
 }
 
-TEST_F(StoreTest, ForgetsTheRequestOfWhatWasDeleted) {
+TEST_P(StoreTest, ForgetsTheRequestOfWhatWasDeleted) {
   const RequestKey key{"CreatePatient", "r1", "f1"};
   ASSERT_TRUE(store_->create_patient({"anna", "", {}, 1}, key).ok());
   ASSERT_TRUE(store_->create_scan(scan("s1"), {"CreateScan", "r2", "f"}).ok());
@@ -162,13 +165,13 @@ TEST_F(StoreTest, ForgetsTheRequestOfWhatWasDeleted) {
   EXPECT_EQ(again->create_time_us, 9);
 }
 
-TEST_F(StoreTest, AFailedCreateLeavesNoRequestBehind) {
+TEST_P(StoreTest, AFailedCreateLeavesNoRequestBehind) {
   const RequestKey key{"CreateScan", "r1", "f1"};
   EXPECT_TRUE(absl::IsNotFound(store_->create_scan(scan("s1"), key).status()));
   EXPECT_FALSE(store_->find_request(key)->has_value());
 }
 
-TEST_F(StoreTest, FollowsAnUpload) {
+TEST_P(StoreTest, FollowsAnUpload) {
   add_patient("anna");
   ASSERT_TRUE(store_->create_scan(scan("s1"), {}).ok());
   ASSERT_TRUE(store_->set_scan_received("anna", "s1", 4'999'999'999).ok());
@@ -182,7 +185,7 @@ TEST_F(StoreTest, FollowsAnUpload) {
   EXPECT_TRUE(absl::IsNotFound(store_->set_scan_received("anna", "other", 1)));
 }
 
-TEST_F(StoreTest, HoldsOnToAScanThatAModelWasBuiltFrom) {
+TEST_P(StoreTest, HoldsOnToAScanThatAModelWasBuiltFrom) {
   add_patient("anna");
   ASSERT_TRUE(store_->create_scan(scan("s1"), {}).ok());
   ASSERT_TRUE(store_->create_model({"anna", "m1", "s1", "hash", "spec", "report", 1, ""}, {}).ok());
@@ -195,7 +198,7 @@ TEST_F(StoreTest, HoldsOnToAScanThatAModelWasBuiltFrom) {
   EXPECT_TRUE(store_->delete_patient("anna", false).ok());
 }
 
-TEST_F(StoreTest, HoldsOnToTheBoneOfAModelToo) {
+TEST_P(StoreTest, HoldsOnToTheBoneOfAModelToo) {
   add_patient("anna");
   ASSERT_TRUE(store_->create_scan(scan("s1"), {}).ok());
   ASSERT_TRUE(store_->create_scan(scan("b1"), {}).ok());
@@ -208,13 +211,13 @@ TEST_F(StoreTest, HoldsOnToTheBoneOfAModelToo) {
   EXPECT_TRUE(store_->delete_scan("anna", "b1").ok());
 }
 
-TEST_F(StoreTest, RefusesAModelOfAScanThatIsGone) {
+TEST_P(StoreTest, RefusesAModelOfAScanThatIsGone) {
   add_patient("anna");
   EXPECT_TRUE(absl::IsNotFound(store_->create_model({"anna", "m1", "s1", "h", "", "", 1, ""}, {}).status()));
   EXPECT_TRUE(store_->list_models("anna", {"", 10})->empty());
 }
 
-TEST_F(StoreTest, KeepsAResultWhole) {
+TEST_P(StoreTest, KeepsAResultWhole) {
   ASSERT_TRUE(store_->create_simulation(simulation("x"), {}).ok());
   EXPECT_TRUE(absl::IsFailedPrecondition(store_->get_result("x").status()));
   SimulationRecord ended = simulation("x");
@@ -231,7 +234,7 @@ TEST_F(StoreTest, KeepsAResultWhole) {
   EXPECT_EQ(store_->get_result("x")->frame_message, "frame");
 }
 
-TEST_F(StoreTest, FindsSeriesByStep) {
+TEST_P(StoreTest, FindsSeriesByStep) {
   ASSERT_TRUE(store_->create_simulation(simulation("x"), {}).ok());
   ASSERT_TRUE(store_->append_series("x", {1, 500, "first"}).ok());
   ASSERT_TRUE(store_->append_series("x", {501, 700, "second"}).ok());
@@ -243,7 +246,7 @@ TEST_F(StoreTest, FindsSeriesByStep) {
   EXPECT_FALSE(store_->next_series_chunk("x", 0)->has_value());
 }
 
-TEST_F(StoreTest, ListsWhatHasNotEnded) {
+TEST_P(StoreTest, ListsWhatHasNotEnded) {
   for (const char* id : {"ready", "ended"}) ASSERT_TRUE(store_->create_simulation(simulation(id), {}).ok());
   SimulationRecord ended = simulation("ended");
   ended.state = SimulationState::kStopped;
@@ -255,7 +258,7 @@ TEST_F(StoreTest, ListsWhatHasNotEnded) {
   EXPECT_EQ(unended->front().spec_message, simulation("ready").spec_message);
 }
 
-TEST_F(StoreTest, HoldsOnToTheModelOfASimulationThatHasNotEnded) {
+TEST_P(StoreTest, HoldsOnToTheModelOfASimulationThatHasNotEnded) {
   add_patient("anna");
   ASSERT_TRUE(store_->create_model({"anna", "m", "", "hash", "spec", "report", 1, ""}, {}).ok());
   ASSERT_TRUE(store_->create_model({"anna", "m2", "", "hash", "spec", "report", 1, ""}, {}).ok());
@@ -271,7 +274,7 @@ TEST_F(StoreTest, HoldsOnToTheModelOfASimulationThatHasNotEnded) {
   EXPECT_TRUE(store_->delete_patient("anna", true).ok());
 }
 
-TEST_F(StoreTest, ServesManyThreads) {
+TEST_P(StoreTest, ServesManyThreads) {
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([this, t] {
@@ -288,23 +291,23 @@ TEST_F(StoreTest, ServesManyThreads) {
 TEST(StoreOpening, RefusesAFileThatIsNoDatabase) {
   lipofill::testing::TemporaryDirectory directory;
   std::ofstream(directory.file("db")) << std::string(8192, 'x');
-  const auto store = SqliteStore::open(directory.file("db"));
+  const auto store = SqlStore::open(directory.file("db"));
   EXPECT_EQ(store.status().code(), absl::StatusCode::kDataLoss) << store.status();
 }
 
 TEST(StoreOpening, RefusesANewerSchemaAndOthersDatabases) {
   lipofill::testing::TemporaryDirectory directory;
-  ASSERT_TRUE(SqliteStore::open(directory.file("new")).ok());
-  ASSERT_TRUE((*Database::open(directory.file("new")))->execute("PRAGMA user_version = 99").ok());
-  const auto newer = SqliteStore::open(directory.file("new"));
+  ASSERT_TRUE(SqlStore::open(directory.file("new")).ok());
+  ASSERT_TRUE((*SqliteDatabase::open(directory.file("new")))->execute("PRAGMA user_version = 99").ok());
+  const auto newer = SqlStore::open(directory.file("new"));
   EXPECT_TRUE(absl::IsFailedPrecondition(newer.status()));
   EXPECT_THAT(std::string(newer.status().message()), HasSubstr("version 99"));
-  ASSERT_TRUE((*Database::open(directory.file("other")))->execute("CREATE TABLE t (x)").ok());
-  EXPECT_TRUE(absl::IsFailedPrecondition(SqliteStore::open(directory.file("other")).status()));
+  ASSERT_TRUE((*SqliteDatabase::open(directory.file("other")))->execute("CREATE TABLE t (x)").ok());
+  EXPECT_TRUE(absl::IsFailedPrecondition(SqlStore::open(directory.file("other")).status()));
 }
 
 TEST(StoreOpening, RefusesAPlaceThatCannotBeWritten) {
-  EXPECT_FALSE(SqliteStore::open("/proc/nothing/db").ok());
+  EXPECT_FALSE(SqlStore::open("/proc/nothing/db").ok());
 }
 
 TEST(DataDirectoryTest, BelongsToOneDaemon) {
@@ -317,7 +320,7 @@ TEST(DataDirectoryTest, BelongsToOneDaemon) {
   EXPECT_TRUE(DataDirectory::open(directory.path() / "data").ok());
 }
 
-TEST_F(StoreTest, TheOwnerOfASimulationIsThatOfTheOneThereIsNow) {
+TEST_P(StoreTest, TheOwnerOfASimulationIsThatOfTheOneThereIsNow) {
   SimulationRecord record = simulation("x");
   record.tenant = "ward";
   ASSERT_TRUE(store_->create_simulation(record, {}).ok());
@@ -331,6 +334,8 @@ TEST_F(StoreTest, TheOwnerOfASimulationIsThatOfTheOneThereIsNow) {
   EXPECT_EQ(store_->owner_of_simulation("x")->tenant, "clinic");
   EXPECT_EQ(store_->owner_of_simulation("x")->patient, "berta");
 }
+
+INSTANTIATE_TEST_SUITE_P(EveryKind, StoreTest, ::testing::Values(StoreKind::kSqlite, StoreKind::kPostgres), kind_name);
 
 }  // namespace
 }  // namespace lipofill::server

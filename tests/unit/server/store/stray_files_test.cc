@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "server/store/sqlite_database.h"
 #include "tests/unit/server/store/full_store.h"
 #include "tests/unit/server/temporary_directory.h"
 
@@ -40,8 +41,9 @@ TEST(StrayFiles, ADamagedRecordKeepsItsFile) {
   lipofill::testing::TemporaryDirectory directory;
   const fs::path data = directory.path() / "data";
   const auto store = make_full_store(data);
-  ASSERT_TRUE(
-      (*Database::open((data / "lipofill.sqlite").string()))->execute("UPDATE scans SET sum = zeroblob(32)").ok());
+  ASSERT_TRUE((*SqliteDatabase::open((data / "lipofill.sqlite").string()))
+                  ->execute("UPDATE scans SET sum = zeroblob(32)")
+                  .ok());
   ASSERT_FALSE(store->get_scan("anna", "scan-1").ok());
   EXPECT_EQ(
       set_strays_aside(*store, *ScanFiles::open(data / "scans"), *CheckpointFiles::open(data / "checkpoints"), data, 0)

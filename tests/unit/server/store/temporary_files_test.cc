@@ -22,7 +22,7 @@ class TemporaryFilesTest : public ::testing::Test {
 
   lipofill::testing::TemporaryDirectory directory_;
   const fs::path data_ = directory_.path() / "data";
-  std::unique_ptr<SqliteStore> store_ = make_full_store(data_);
+  std::unique_ptr<SqlStore> store_ = make_full_store(data_);
   TemporaryFiles files_{*store_, data_};
 };
 

@@ -18,7 +18,7 @@ class VerificationTest : public ::testing::Test {
  protected:
   VerificationTest() { make_full_store(data_); }
   Verification look() {
-    auto found = verify_store(data_, [](const Verification&) {});
+    auto found = verify_store(data_, (data_ / "lipofill.sqlite").string(), [](const Verification&) {});
     EXPECT_TRUE(found.ok()) << found.status();
     return found.ok() ? *std::move(found) : Verification();
   }
@@ -73,8 +73,10 @@ TEST_F(VerificationTest, NamesFilesThatAreMissing) {
 
 TEST_F(VerificationTest, SaysThatThereIsNoStore) {
   fs::resize_file(data_ / "lipofill.sqlite", 0);
-  EXPECT_TRUE(absl::IsFailedPrecondition(verify_store(data_, [](const Verification&) {}).status()));
-  EXPECT_TRUE(absl::IsFailedPrecondition(verify_store(directory_.path(), [](const Verification&) {}).status()));
+  EXPECT_TRUE(absl::IsFailedPrecondition(
+      verify_store(data_, (data_ / "lipofill.sqlite").string(), [](const Verification&) {}).status()));
+  EXPECT_TRUE(absl::IsFailedPrecondition(
+      verify_store(directory_.path(), directory_.file("lipofill.sqlite"), [](const Verification&) {}).status()));
 }
 
 }  // namespace

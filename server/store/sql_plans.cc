@@ -5,7 +5,7 @@
 #include "server/store/record_names.h"
 #include "server/store/row_sums.h"
 #include "server/store/scope_query.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
 
 namespace lipofill::server {
 namespace {
@@ -18,7 +18,7 @@ absl::Status no_plan(const std::string& patient, const std::string& id) {
 
 }  // namespace
 
-absl::StatusOr<PlanRecord> SqliteStore::create_plan(const PlanRecord& plan, const RequestKey& request) {
+absl::StatusOr<PlanRecord> SqlStore::create_plan(const PlanRecord& plan, const RequestKey& request) {
   PlanRecord made = plan;
   made.revision = 1;
   made.update_time_us = made.create_time_us;
@@ -43,62 +43,60 @@ absl::StatusOr<PlanRecord> SqliteStore::create_plan(const PlanRecord& plan, cons
   return made;
 }
 
-absl::StatusOr<PlanRecord> SqliteStore::get_plan(const std::string& patient, const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  return read_plan(*database_, patient, id);
+absl::StatusOr<PlanRecord> SqlStore::get_plan(const std::string& patient, const std::string& id) {
+  return turns_.look([&] { return read_plan(*database_, patient, id); });
 }
 
-absl::StatusOr<std::vector<PlanRecord>> SqliteStore::list_plans(const Scope& scope, const std::string& patient,
-                                                                const Page& page, uint64_t most_bytes) {
-  const std::lock_guard lock(mutex_);
-  if (!patient.empty()) {
-    if (const auto known = read_patient(patient); !known.ok()) return known.status();
-  }
-  const size_t slash = std::min(page.after.find('/'), page.after.size());
-  const std::string after_patient = page.after.substr(0, slash);
-  const std::string after_id = page.after.substr(std::min(slash + 1, page.after.size()));
-  Query query(*database_,
-              "SELECT " PLAN_COLUMNS ", " PLAN_IS_WHOLE
-              " FROM plans WHERE (patient, id) > (?1, ?2) AND (length(?3) = 0 OR patient = ?3) AND patient IN "
-              "(SELECT id FROM patients WHERE tenant = ?4) AND (?5 OR patient IN "
-              "(SELECT CAST(value AS BLOB) FROM json_each(CAST(?6 AS TEXT)))) ORDER BY patient, id LIMIT ?7");
-  query.bind(after_patient, after_id, patient, scope.tenant, !scope.patients, json_of(scope), page.size);
-  std::vector<PlanRecord> plans;
-  for (uint64_t bytes = 0; bytes <= most_bytes && query.next();) {
-    plans.push_back(listed_plan_of(query));
-    bytes += plans.back().content_message.size();
-  }
-  if (!query.status().ok()) return query.status();
-  return plans;
+absl::StatusOr<std::vector<PlanRecord>> SqlStore::list_plans(const Scope& scope, const std::string& patient,
+                                                             const Page& page, uint64_t most_bytes) {
+  return turns_.look([&]() -> absl::StatusOr<std::vector<PlanRecord>> {
+    if (!patient.empty()) {
+      if (const auto known = read_patient(patient); !known.ok()) return known.status();
+    }
+    const size_t slash = std::min(page.after.find('/'), page.after.size());
+    const std::string after_patient = page.after.substr(0, slash);
+    const std::string after_id = page.after.substr(std::min(slash + 1, page.after.size()));
+    Query query(
+        *database_,
+        "SELECT " PLAN_COLUMNS ", " PLAN_IS_WHOLE
+        " FROM plans WHERE (patient, id) > (?1, ?2) AND (length(CAST(?3 AS BLOB)) = 0 OR patient = ?3) AND patient IN "
+        "(SELECT id FROM patients WHERE tenant = ?4) AND " IS_AMONG("patient", "?5",
+                                                                    "?6") " ORDER BY patient, id LIMIT ?7");
+    query.bind(after_patient, after_id, patient, scope.tenant, !scope.patients, patients_of(scope), page.size);
+    std::vector<PlanRecord> plans;
+    for (uint64_t bytes = 0; bytes <= most_bytes && query.next();) {
+      plans.push_back(listed_plan_of(query));
+      bytes += plans.back().content_message.size();
+    }
+    if (!query.status().ok()) return query.status();
+    return plans;
+  });
 }
 
-absl::StatusOr<PlanRecord> SqliteStore::update_plan(const std::string& patient, const std::string& id,
-                                                    const PlanChange& change) {
-  absl::StatusOr<PlanRecord> plan = absl::UnknownError("");
-  const absl::Status done = transact([&]() -> absl::Status {
+absl::StatusOr<PlanRecord> SqlStore::update_plan(const std::string& patient, const std::string& id,
+                                                 const PlanChange& change) {
+  return turns_.transact([&]() -> absl::StatusOr<PlanRecord> {
     const auto present = read_plan(*database_, patient, id);
     if (!present.ok()) return present.status();
-    plan = change(*present);
+    auto plan = change(*present);
     if (!plan.ok()) return plan.status();
-    if (plan->content_message == present->content_message) {
-      plan = present;
-      return absl::OkStatus();
-    }
+    if (plan->content_message == present->content_message) return present;
     if (const absl::Status there = check_scans_of(*database_, *plan); !there.ok()) return there;
     plan->revision = present->revision + 1;
     Query update(*database_,
                  "UPDATE plans SET revision = ?, scan = ?, target = ?, content = ?, update_time_us = ? "
                  "WHERE patient = ? AND id = ?");
-    const absl::Status updated =
+    absl::Status done =
         update.bind(plan->revision, plan->scan, plan->target, plan->content_message, plan->update_time_us, patient, id)
             .run();
-    return updated.ok() ? write_plan_revision(*database_, *plan) : updated;
+    if (done.ok()) done = write_plan_revision(*database_, *plan);
+    if (!done.ok()) return done;
+    return plan;
   });
-  return done.ok() ? plan : done;
 }
 
-absl::Status SqliteStore::delete_plan(const std::string& patient, const std::string& id, const PlanCheck& check) {
-  return transact([&]() -> absl::Status {
+absl::Status SqlStore::delete_plan(const std::string& patient, const std::string& id, const PlanCheck& check) {
+  return turns_.transact([&]() -> absl::Status {
     if (check != nullptr) {
       const auto present = read_plan(*database_, patient, id);
       const absl::Status fits = present.ok() ? check(*present) : present.status();

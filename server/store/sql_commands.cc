@@ -1,7 +1,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/store/record_names.h"
 #include "server/store/row_sums.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
 
 namespace lipofill::server {
 namespace {
@@ -23,8 +23,8 @@ absl::Status forget_end(Database& database, const std::string& simulation) {
 
 }  // namespace
 
-absl::StatusOr<bool> SqliteStore::append_command(const CommandRecord& command, const std::string& spec_message,
-                                                 const RequestKey& request) {
+absl::StatusOr<bool> SqlStore::append_command(const CommandRecord& command, const std::string& spec_message,
+                                              const RequestKey& request) {
   const auto earlier = transact_once(request, simulation_name(command.simulation), [&]() -> absl::Status {
     const auto simulation = read_simulation(command.simulation);
     if (!simulation.ok()) return simulation.status();
@@ -38,48 +38,57 @@ absl::StatusOr<bool> SqliteStore::append_command(const CommandRecord& command, c
   return !earlier->has_value();
 }
 
-absl::Status SqliteStore::write_command(const CommandRecord& command) {
-  Query insert(*database_, "INSERT INTO simulation_commands (" COMMAND_COLUMNS
-                           ") SELECT ?1, coalesce(max(number), 0) + 1, ?2, ?3, ?4, 1, ?5 "
-                           "FROM simulation_commands WHERE simulation = ?1");
+absl::Status SqlStore::write_command(const CommandRecord& command) {
+  const auto last = read_last_command(command.simulation);
+  if (!last.ok()) return last.status();
+  Query insert(*database_, "INSERT INTO simulation_commands (" COMMAND_COLUMNS ") VALUES (?, ?, ?, ?, ?, 1, ?)");
   return insert
-      .bind(command.simulation, static_cast<int>(command.kind), command.step, command.payload, command.create_time_us)
+      .bind(command.simulation, *last + 1, static_cast<int>(command.kind), command.step, command.payload,
+            command.create_time_us)
       .run();
 }
 
-absl::Status SqliteStore::write_state(const std::string& simulation, SimulationState state,
-                                      const std::string& spec_message) {
+absl::StatusOr<uint64_t> SqlStore::read_last_command(const std::string& simulation) {
+  Query query(*database_, "SELECT coalesce(max(number), 0) FROM simulation_commands WHERE simulation = ?");
+  const uint64_t last = query.bind(simulation).next() ? query.unsigned_integer(0) : 0;
+  if (!query.status().ok()) return query.status();
+  return last;
+}
+
+absl::Status SqlStore::write_state(const std::string& simulation, SimulationState state,
+                                   const std::string& spec_message) {
   Query update(*database_, "UPDATE simulations SET state = ?, spec = ? WHERE id = ?");
   return update.bind(static_cast<int>(state), spec_message, simulation).run();
 }
 
-absl::StatusOr<std::vector<CommandRecord>> SqliteStore::list_commands(const std::string& simulation) {
-  const std::lock_guard lock(mutex_);
-  Query query(*database_,
-              "SELECT number, kind, step, payload, create_time_us, " IS_WHOLE(
-                  "simulation_commands", COMMAND_COLUMNS) " FROM simulation_commands "
-              "WHERE simulation = ? AND on_course ORDER BY number");
-  query.bind(simulation);
-  std::vector<CommandRecord> commands;
-  while (query.next()) {
-    if (!query.is_true(5)) return damaged_record(absl::StrCat(simulation_name(simulation), " (its commands)"));
-    commands.push_back({simulation, query.unsigned_integer(0), static_cast<CommandKind>(query.integer(1)),
-                        query.unsigned_integer(2), query.text(3), query.integer(4)});
-  }
-  if (!query.status().ok()) return query.status();
-  return commands;
+absl::StatusOr<std::vector<CommandRecord>> SqlStore::list_commands(const std::string& simulation) {
+  return turns_.look([&]() -> absl::StatusOr<std::vector<CommandRecord>> {
+    Query query(*database_,
+                "SELECT number, kind, step, payload, create_time_us, " IS_WHOLE(
+                    "simulation_commands", COMMAND_COLUMNS) " FROM simulation_commands "
+                "WHERE simulation = ? AND on_course = 1 ORDER BY number");
+    query.bind(simulation);
+    std::vector<CommandRecord> commands;
+    while (query.next()) {
+      if (!query.is_true(5)) return damaged_record(absl::StrCat(simulation_name(simulation), " (its commands)"));
+      commands.push_back({simulation, query.unsigned_integer(0), static_cast<CommandKind>(query.integer(1)),
+                          query.unsigned_integer(2), query.text(3), query.integer(4)});
+    }
+    if (!query.status().ok()) return query.status();
+    return commands;
+  });
 }
 
-absl::StatusOr<bool> SqliteStore::restore_simulation(const CommandRecord& restore, SimulationState state,
-                                                     const std::string& spec_message, const RequestKey& request) {
+absl::StatusOr<bool> SqlStore::restore_simulation(const CommandRecord& restore, SimulationState state,
+                                                  const std::string& spec_message, const RequestKey& request) {
   const auto earlier = transact_once(request, simulation_name(restore.simulation),
                                      [&] { return write_restore(restore, state, spec_message); });
   if (!earlier.ok()) return earlier.status();
   return !earlier->has_value();
 }
 
-absl::Status SqliteStore::write_restore(const CommandRecord& restore, SimulationState state,
-                                        const std::string& spec_message) {
+absl::Status SqlStore::write_restore(const CommandRecord& restore, SimulationState state,
+                                     const std::string& spec_message) {
   const std::string& id = restore.simulation;
   const auto checkpoint = read_checkpoint(id, restore.payload);
   if (!checkpoint.ok()) return checkpoint.status();

@@ -3,23 +3,25 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "server/store/sqlite.h"
+#include "server/store/database.h"
 #include "server/store/store.h"
+#include "server/store/transactor.h"
 
 namespace lipofill::server {
 
-/// The store in one SQLite file: write-ahead log, foreign keys, a schema with a version (PRAGMA
-/// user_version). One connection, its users take turns; calls last some ten microseconds.
-class SqliteStore : public Store {
+/// The store in a database: a SQLite file, or PostgreSQL, which several daemons may share. One
+/// connection, whose users take turns, see Transactor.
+class SqlStore : public Store {
  public:
-  /// Opens the store. DATA_LOSS for a file that is no database, FAILED_PRECONDITION for one of
-  /// another program or of a newer schema.
-  static absl::StatusOr<std::unique_ptr<SqliteStore>> open(const std::string& path);
+  /// Takes a database that is up to date, see open_database().
+  explicit SqlStore(std::unique_ptr<Database> database) : database_(std::move(database)) {}
+  /// Opens the store in the database that open_database() opens.
+  static absl::StatusOr<std::unique_ptr<SqlStore>> open(const std::string& place);
 
   absl::StatusOr<PatientRecord> create_patient(const PatientRecord& patient, const RequestKey& request) override;
   absl::StatusOr<PatientRecord> get_patient(const std::string& id) override;
@@ -100,31 +102,30 @@ class SqliteStore : public Store {
   absl::StatusOr<std::vector<TemporaryFile>> list_temporary_files() override;
   absl::Status forget_temporary_files(const std::vector<std::string>& paths) override;
 
+  const Database& database() const { return *database_; }
   /// The id that the store was made with, and how often it was opened to be served.
   absl::StatusOr<StoreIdentity> read_identity();
   absl::Status set_starts(uint64_t starts);
 
  private:
-  explicit SqliteStore(std::unique_ptr<Database> database) : database_(std::move(database)) {}
-
-  /// Does work whole or not at all: nothing it wrote stays when it is not OK.
-  using Work = std::function<absl::Status()>;
-  absl::Status transact(const Work& work);
-  /// The same for what a request makes, or changes, once: `name` is remembered with it. The name
-  /// that an equal request is remembered with, and nothing is done, where there was one.
+  /// Carries out as one transaction what a request makes, or changes, once: `name` is remembered
+  /// with it. The name that an equal request is remembered with, and nothing is done, where there
+  /// was one.
   absl::StatusOr<std::optional<std::string>> transact_once(const RequestKey& request, const std::string& name,
-                                                           const Work& work);
+                                                           const std::function<absl::Status()>& work);
 
   /// `origin`: the checkpoint it begins from, if any.
   absl::StatusOr<SimulationRecord> make_simulation(const SimulationRecord& simulation, const CheckpointRecord* origin,
                                                    const RequestKey& request);
 
-  /// The following are called with the mutex held.
+  /// The following are called in a transaction.
   absl::StatusOr<PatientRecord> read_patient(const std::string& id);
   absl::StatusOr<ScanRecord> read_scan(const std::string& patient, const std::string& id);
   absl::StatusOr<ModelRecord> read_model(const std::string& patient, const std::string& id);
   absl::StatusOr<SimulationRecord> read_simulation(const std::string& id);
   absl::StatusOr<CheckpointRecord> read_checkpoint(const std::string& simulation, const std::string& id);
+  /// The number of the last command that a simulation took; 0 before any.
+  absl::StatusOr<uint64_t> read_last_command(const std::string& simulation);
   absl::Status write_patient(const PatientRecord& patient);
   absl::Status write_scan(const ScanRecord& scan);
   absl::Status write_model(const ModelRecord& model);
@@ -146,10 +147,11 @@ class SqliteStore : public Store {
   /// Forgets requests that made the resource `name` or something below it.
   absl::Status forget_requests(const std::string& name);
 
-  std::mutex mutex_;
-  std::unique_ptr<Database> database_;
+  const std::unique_ptr<Database> database_;
+  Transactor turns_{*database_};
   /// The owners of simulations, which never change, as every call asks for one: to look into a
-  /// record is to sum all of it, and plans may be long.
+  /// record is to sum all of it, and plans may be long. Empty where another daemon may delete a
+  /// simulation and make another of its name.
   std::map<std::string, Owner> owners_;
 };
 

@@ -1,7 +1,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/store/record_names.h"
 #include "server/store/row_sums.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
 
 namespace lipofill::server {
 namespace {
@@ -26,14 +26,14 @@ absl::Status no_model(const std::string& patient, const std::string& id) {
 
 }  // namespace
 
-absl::StatusOr<ModelRecord> SqliteStore::create_model(const ModelRecord& model, const RequestKey& request) {
+absl::StatusOr<ModelRecord> SqlStore::create_model(const ModelRecord& model, const RequestKey& request) {
   const auto earlier = transact_once(request, model_name(model.patient, model.id), [&] { return write_model(model); });
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) return get_model(model.patient, (**earlier).substr(model_name(model.patient, "").size()));
   return model;
 }
 
-absl::Status SqliteStore::write_model(const ModelRecord& model) {
+absl::Status SqlStore::write_model(const ModelRecord& model) {
   if (const auto patient = read_patient(model.patient); !patient.ok()) return patient.status();
   for (const std::string& id : {model.scan, model.bone_scan}) {
     if (id.empty()) continue;
@@ -46,12 +46,11 @@ absl::Status SqliteStore::write_model(const ModelRecord& model) {
       .run();
 }
 
-absl::StatusOr<ModelRecord> SqliteStore::get_model(const std::string& patient, const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  return read_model(patient, id);
+absl::StatusOr<ModelRecord> SqlStore::get_model(const std::string& patient, const std::string& id) {
+  return turns_.look([&] { return read_model(patient, id); });
 }
 
-absl::StatusOr<ModelRecord> SqliteStore::read_model(const std::string& patient, const std::string& id) {
+absl::StatusOr<ModelRecord> SqlStore::read_model(const std::string& patient, const std::string& id) {
   Query query(*database_, "SELECT " MODEL_COLUMNS
                           ", " IS_WHOLE("models", MODEL_COLUMNS) " FROM models WHERE patient = ? AND id = ?");
   if (!query.bind(patient, id).next()) return query.status().ok() ? no_model(patient, id) : query.status();
@@ -59,20 +58,22 @@ absl::StatusOr<ModelRecord> SqliteStore::read_model(const std::string& patient, 
   return model_of(query);
 }
 
-absl::StatusOr<std::vector<ModelRecord>> SqliteStore::list_models(const std::string& patient, const Page& page) {
-  const std::lock_guard lock(mutex_);
-  if (const auto known = read_patient(patient); !known.ok()) return known.status();
-  Query query(*database_, "SELECT " MODEL_COLUMNS ", " IS_WHOLE(
-                              "models", MODEL_COLUMNS) " FROM models WHERE patient = ? AND id > ? ORDER BY id LIMIT ?");
-  query.bind(patient, page.after, page.size);
-  std::vector<ModelRecord> models;
-  while (query.next()) models.push_back(listed_model_of(query));
-  if (!query.status().ok()) return query.status();
-  return models;
+absl::StatusOr<std::vector<ModelRecord>> SqlStore::list_models(const std::string& patient, const Page& page) {
+  return turns_.look([&]() -> absl::StatusOr<std::vector<ModelRecord>> {
+    if (const auto known = read_patient(patient); !known.ok()) return known.status();
+    Query query(*database_,
+                "SELECT " MODEL_COLUMNS
+                ", " IS_WHOLE("models", MODEL_COLUMNS) " FROM models WHERE patient = ? AND id > ? ORDER BY id LIMIT ?");
+    query.bind(patient, page.after, page.size);
+    std::vector<ModelRecord> models;
+    while (query.next()) models.push_back(listed_model_of(query));
+    if (!query.status().ok()) return query.status();
+    return models;
+  });
 }
 
-absl::Status SqliteStore::delete_model(const std::string& patient, const std::string& id) {
-  return transact([&]() -> absl::Status {
+absl::Status SqlStore::delete_model(const std::string& patient, const std::string& id) {
+  return turns_.transact([&]() -> absl::Status {
     const std::string name = model_name(patient, id);
     if (auto unused = check_unused(name, name + '\0'); !unused.ok()) return unused;
     Query remove(*database_, "DELETE FROM models WHERE patient = ? AND id = ?");

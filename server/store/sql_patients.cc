@@ -2,7 +2,7 @@
 #include "server/store/record_names.h"
 #include "server/store/row_sums.h"
 #include "server/store/scope_query.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
 
 namespace lipofill::server {
 namespace {
@@ -13,14 +13,14 @@ absl::Status no_patient(const std::string& id) {
 
 }  // namespace
 
-absl::StatusOr<PatientRecord> SqliteStore::create_patient(const PatientRecord& patient, const RequestKey& request) {
+absl::StatusOr<PatientRecord> SqlStore::create_patient(const PatientRecord& patient, const RequestKey& request) {
   const auto earlier = transact_once(request, patient_name(patient.id), [&] { return write_patient(patient); });
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) return get_patient((**earlier).substr(patient_name("").size()));
   return patient;
 }
 
-absl::Status SqliteStore::write_patient(const PatientRecord& patient) {
+absl::Status SqlStore::write_patient(const PatientRecord& patient) {
   Query insert(*database_, "INSERT INTO patients (id, display_name, create_time_us, tenant) VALUES (?, ?, ?, ?)");
   const auto done = insert.bind(patient.id, patient.display_name, patient.create_time_us, patient.tenant).run();
   if (absl::IsAlreadyExists(done)) {
@@ -29,7 +29,7 @@ absl::Status SqliteStore::write_patient(const PatientRecord& patient) {
   return done.ok() ? write_labels(patient) : done;
 }
 
-absl::Status SqliteStore::write_labels(const PatientRecord& patient) {
+absl::Status SqlStore::write_labels(const PatientRecord& patient) {
   Query clear(*database_, "DELETE FROM patient_labels WHERE patient = ?");
   absl::Status done = clear.bind(patient.id).run();
   for (const auto& [key, value] : patient.labels) {
@@ -39,12 +39,11 @@ absl::Status SqliteStore::write_labels(const PatientRecord& patient) {
   return done;
 }
 
-absl::StatusOr<PatientRecord> SqliteStore::get_patient(const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  return read_patient(id);
+absl::StatusOr<PatientRecord> SqlStore::get_patient(const std::string& id) {
+  return turns_.look([&] { return read_patient(id); });
 }
 
-absl::StatusOr<PatientRecord> SqliteStore::read_patient(const std::string& id) {
+absl::StatusOr<PatientRecord> SqlStore::read_patient(const std::string& id) {
   Query query(*database_, "SELECT display_name, create_time_us, tenant, " IS_WHOLE(
                               "patients", PATIENT_COLUMNS) " FROM patients WHERE id = ?");
   if (!query.bind(id).next()) {
@@ -64,52 +63,53 @@ absl::StatusOr<PatientRecord> SqliteStore::read_patient(const std::string& id) {
   return patient;
 }
 
-absl::StatusOr<std::vector<PatientRecord>> SqliteStore::list_patients(const Scope& scope, const Page& page) {
-  const std::lock_guard lock(mutex_);
-  std::vector<std::string> ids;
-  Query query(*database_,
-              "SELECT id FROM patients WHERE tenant = ?1 AND id > ?2 "
-              "AND (?3 OR id IN (SELECT CAST(value AS BLOB) FROM json_each(CAST(?4 AS TEXT)))) ORDER BY id LIMIT ?5");
-  query.bind(scope.tenant, page.after, !scope.patients, json_of(scope), page.size);
-  while (query.next()) ids.push_back(query.text(0));
-  if (!query.status().ok()) return query.status();
-  std::vector<PatientRecord> patients;
-  for (const std::string& id : ids) {
-    auto patient = read_patient(id);
-    if (absl::IsDataLoss(patient.status())) {
-      patient = PatientRecord();
-      patient->id = id;
-      patient->is_damaged = true;
+absl::StatusOr<std::vector<PatientRecord>> SqlStore::list_patients(const Scope& scope, const Page& page) {
+  return turns_.look([&]() -> absl::StatusOr<std::vector<PatientRecord>> {
+    std::vector<std::string> ids;
+    Query query(*database_, "SELECT id FROM patients WHERE tenant = ?1 AND id > ?2 AND " IS_AMONG(
+                                "id", "?3", "?4") " ORDER BY id LIMIT ?5");
+    query.bind(scope.tenant, page.after, !scope.patients, patients_of(scope), page.size);
+    while (query.next()) ids.push_back(query.text(0));
+    if (!query.status().ok()) return query.status();
+    std::vector<PatientRecord> patients;
+    for (const std::string& id : ids) {
+      auto patient = read_patient(id);
+      if (absl::IsDataLoss(patient.status())) {
+        patient = PatientRecord();
+        patient->id = id;
+        patient->is_damaged = true;
+      }
+      if (!patient.ok()) return patient.status();
+      patients.push_back(*std::move(patient));
     }
-    if (!patient.ok()) return patient.status();
-    patients.push_back(*std::move(patient));
-  }
-  return patients;
+    return patients;
+  });
 }
 
-absl::StatusOr<Owner> SqliteStore::owner_of_patient(const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  Query query(*database_, "SELECT tenant, " IS_WHOLE("patients", PATIENT_COLUMNS) " FROM patients WHERE id = ?");
-  if (!query.bind(id).next()) return query.status().ok() ? no_patient(id) : query.status();
-  if (!query.is_true(1)) return damaged_record(patient_name(id));
-  return Owner{query.text(0), id};
+absl::StatusOr<Owner> SqlStore::owner_of_patient(const std::string& id) {
+  return turns_.look([&]() -> absl::StatusOr<Owner> {
+    Query query(*database_, "SELECT tenant, " IS_WHOLE("patients", PATIENT_COLUMNS) " FROM patients WHERE id = ?");
+    if (!query.bind(id).next()) return query.status().ok() ? no_patient(id) : query.status();
+    if (!query.is_true(1)) return damaged_record(patient_name(id));
+    return Owner{query.text(0), id};
+  });
 }
 
-absl::StatusOr<PatientRecord> SqliteStore::update_patient(const std::string& id, const PatientChange& change) {
-  absl::StatusOr<PatientRecord> patient = absl::UnknownError("");
-  const absl::Status done = transact([&]() -> absl::Status {
-    patient = read_patient(id);
+absl::StatusOr<PatientRecord> SqlStore::update_patient(const std::string& id, const PatientChange& change) {
+  return turns_.transact([&]() -> absl::StatusOr<PatientRecord> {
+    auto patient = read_patient(id);
     if (patient.ok()) patient = change(*patient);
     if (!patient.ok()) return patient.status();
     Query update(*database_, "UPDATE patients SET display_name = ? WHERE id = ?");
-    const absl::Status updated = update.bind(patient->display_name, id).run();
-    return updated.ok() ? write_labels(*patient) : updated;
+    absl::Status done = update.bind(patient->display_name, id).run();
+    if (done.ok()) done = write_labels(*patient);
+    if (!done.ok()) return done;
+    return patient;
   });
-  return done.ok() ? patient : done;
 }
 
-absl::Status SqliteStore::delete_patient(const std::string& id, bool force, const PatientCheck& check) {
-  return transact([&]() -> absl::Status {
+absl::Status SqlStore::delete_patient(const std::string& id, bool force, const PatientCheck& check) {
+  return turns_.transact([&]() -> absl::Status {
     const auto patient = read_patient(id);
     // What is damaged can go, unless it is to be checked first.
     absl::Status fits = absl::IsDataLoss(patient.status()) && check == nullptr ? absl::OkStatus() : patient.status();
@@ -123,7 +123,7 @@ absl::Status SqliteStore::delete_patient(const std::string& id, bool force, cons
   });
 }
 
-absl::Status SqliteStore::check_empty(const std::string& patient) {
+absl::Status SqlStore::check_empty(const std::string& patient) {
   Query count(
       *database_,
       "SELECT (SELECT count(*) FROM scans WHERE patient = ?1), (SELECT count(*) FROM models WHERE patient = ?1), "

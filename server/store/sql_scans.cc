@@ -1,7 +1,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/store/record_names.h"
 #include "server/store/row_sums.h"
-#include "server/store/sqlite_store.h"
+#include "server/store/sql_store.h"
 
 namespace lipofill::server {
 namespace {
@@ -37,14 +37,14 @@ absl::Status no_scan(const std::string& patient, const std::string& id) {
 
 }  // namespace
 
-absl::StatusOr<ScanRecord> SqliteStore::create_scan(const ScanRecord& scan, const RequestKey& request) {
+absl::StatusOr<ScanRecord> SqlStore::create_scan(const ScanRecord& scan, const RequestKey& request) {
   const auto earlier = transact_once(request, scan_name(scan.patient, scan.id), [&] { return write_scan(scan); });
   if (!earlier.ok()) return earlier.status();
   if (earlier->has_value()) return get_scan(scan.patient, (**earlier).substr(scan_name(scan.patient, "").size()));
   return scan;
 }
 
-absl::Status SqliteStore::write_scan(const ScanRecord& scan) {
+absl::Status SqlStore::write_scan(const ScanRecord& scan) {
   if (const auto patient = read_patient(scan.patient); !patient.ok()) return patient.status();
   Query insert(*database_, "INSERT INTO scans (" SCAN_COLUMNS ") VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   const absl::Status done = insert
@@ -55,12 +55,11 @@ absl::Status SqliteStore::write_scan(const ScanRecord& scan) {
   return absl::AlreadyExistsError(absl::StrCat(scan_name(scan.patient, scan.id), " exists"));
 }
 
-absl::StatusOr<ScanRecord> SqliteStore::get_scan(const std::string& patient, const std::string& id) {
-  const std::lock_guard lock(mutex_);
-  return read_scan(patient, id);
+absl::StatusOr<ScanRecord> SqlStore::get_scan(const std::string& patient, const std::string& id) {
+  return turns_.look([&] { return read_scan(patient, id); });
 }
 
-absl::StatusOr<ScanRecord> SqliteStore::read_scan(const std::string& patient, const std::string& id) {
+absl::StatusOr<ScanRecord> SqlStore::read_scan(const std::string& patient, const std::string& id) {
   Query query(*database_,
               "SELECT " SCAN_COLUMNS ", " IS_WHOLE("scans", SCAN_COLUMNS) " FROM scans WHERE patient = ? AND id = ?");
   if (!query.bind(patient, id).next()) return query.status().ok() ? no_scan(patient, id) : query.status();
@@ -68,46 +67,50 @@ absl::StatusOr<ScanRecord> SqliteStore::read_scan(const std::string& patient, co
   return scan_of(query);
 }
 
-absl::StatusOr<std::vector<ScanRecord>> SqliteStore::list_scans(const std::string& patient, const Page& page) {
-  const std::lock_guard lock(mutex_);
-  if (const auto known = read_patient(patient); !known.ok()) return known.status();
-  Query query(*database_, "SELECT " SCAN_COLUMNS ", " IS_WHOLE(
-                              "scans", SCAN_COLUMNS) " FROM scans WHERE patient = ? AND id > ? ORDER BY id LIMIT ?");
-  query.bind(patient, page.after, page.size);
-  std::vector<ScanRecord> scans;
-  while (query.next()) scans.push_back(listed_scan_of(query));
-  if (!query.status().ok()) return query.status();
-  return scans;
+absl::StatusOr<std::vector<ScanRecord>> SqlStore::list_scans(const std::string& patient, const Page& page) {
+  return turns_.look([&]() -> absl::StatusOr<std::vector<ScanRecord>> {
+    if (const auto known = read_patient(patient); !known.ok()) return known.status();
+    Query query(*database_, "SELECT " SCAN_COLUMNS ", " IS_WHOLE(
+                                "scans", SCAN_COLUMNS) " FROM scans WHERE patient = ? AND id > ? ORDER BY id LIMIT ?");
+    query.bind(patient, page.after, page.size);
+    std::vector<ScanRecord> scans;
+    while (query.next()) scans.push_back(listed_scan_of(query));
+    if (!query.status().ok()) return query.status();
+    return scans;
+  });
 }
 
-absl::StatusOr<std::vector<ScanRecord>> SqliteStore::list_incomplete_scans() {
-  const std::lock_guard lock(mutex_);
-  // One that is damaged is not among them: nobody can tell whether it is complete.
-  Query query(*database_, "SELECT " SCAN_COLUMNS " FROM scans WHERE complete = 0 AND " IS_WHOLE(
-                              "scans", SCAN_COLUMNS) " ORDER BY patient, id");
-  std::vector<ScanRecord> scans;
-  while (query.next()) scans.push_back(scan_of(query));
-  if (!query.status().ok()) return query.status();
-  return scans;
+absl::StatusOr<std::vector<ScanRecord>> SqlStore::list_incomplete_scans() {
+  return turns_.look([&]() -> absl::StatusOr<std::vector<ScanRecord>> {
+    // One that is damaged is not among them: nobody can tell whether it is complete.
+    Query query(*database_, "SELECT " SCAN_COLUMNS " FROM scans WHERE complete = 0 AND " IS_WHOLE(
+                                "scans", SCAN_COLUMNS) " ORDER BY patient, id");
+    std::vector<ScanRecord> scans;
+    while (query.next()) scans.push_back(scan_of(query));
+    if (!query.status().ok()) return query.status();
+    return scans;
+  });
 }
 
-absl::Status SqliteStore::set_scan_received(const std::string& patient, const std::string& id, uint64_t bytes) {
-  const std::lock_guard lock(mutex_);
-  Query update(*database_, "UPDATE scans SET received_bytes = ? WHERE patient = ? AND id = ?");
-  const absl::Status done = update.bind(bytes, patient, id).run();
-  return done.ok() && database_->changes() == 0 ? no_scan(patient, id) : done;
+absl::Status SqlStore::set_scan_received(const std::string& patient, const std::string& id, uint64_t bytes) {
+  return turns_.transact([&] {
+    Query update(*database_, "UPDATE scans SET received_bytes = ? WHERE patient = ? AND id = ?");
+    const absl::Status done = update.bind(bytes, patient, id).run();
+    return done.ok() && database_->changes() == 0 ? no_scan(patient, id) : done;
+  });
 }
 
-absl::Status SqliteStore::complete_scan(const std::string& patient, const std::string& id,
-                                        const std::string& report_message) {
-  const std::lock_guard lock(mutex_);
-  Query update(*database_, "UPDATE scans SET complete = 1, report = ? WHERE patient = ? AND id = ?");
-  const absl::Status done = update.bind(report_message, patient, id).run();
-  return done.ok() && database_->changes() == 0 ? no_scan(patient, id) : done;
+absl::Status SqlStore::complete_scan(const std::string& patient, const std::string& id,
+                                     const std::string& report_message) {
+  return turns_.transact([&] {
+    Query update(*database_, "UPDATE scans SET complete = 1, report = ? WHERE patient = ? AND id = ?");
+    const absl::Status done = update.bind(report_message, patient, id).run();
+    return done.ok() && database_->changes() == 0 ? no_scan(patient, id) : done;
+  });
 }
 
-absl::Status SqliteStore::delete_scan(const std::string& patient, const std::string& id) {
-  return transact([&]() -> absl::Status {
+absl::Status SqlStore::delete_scan(const std::string& patient, const std::string& id) {
+  return turns_.transact([&]() -> absl::Status {
     Query count(*database_,
                 "SELECT id FROM models WHERE patient = ? AND (scan = ? OR bone_scan = ?) ORDER BY id LIMIT 1");
     if (count.bind(patient, id, id).next()) {

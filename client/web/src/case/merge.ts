@@ -53,11 +53,12 @@ function changesAt(path: string, before: Json, after: Json, into: Change[]): voi
 }
 
 function mergeAt(path: string, base: Json, ours: Json, theirs: Json, lost: Change[]): Json {
-  if (isEqual(ours, base) || isEqual(ours, theirs)) return theirs;
-  if (isEqual(theirs, base)) return ours;
+  // What is equal stays ours: maps come from the daemon in any order, which would read as a change.
+  if (isEqual(ours, theirs)) return ours;
   const parts = partsOf([base, ours, theirs]);
   if (parts === undefined) {
-    lost.push({ field: path, before: theirs, after: ours });
+    if (isEqual(theirs, base)) return ours;
+    if (!isEqual(ours, base)) lost.push({ field: path, before: theirs, after: ours });
     return theirs;
   }
   const merged = parts.map(

@@ -49,6 +49,17 @@ describe("two edits of one plan", () => {
     ]);
   });
 
+  it("leave what is equal as it was written here, whatever order it comes back in", () => {
+    const [nasion, menton] = [vectorOf([1, 2, 3]), vectorOf([4, 5, 6])];
+    const here = edited((plan) => (region(plan).landmarksMm = { nasion, menton }));
+    const theirs = clone(PlanSchema, here);
+    region(theirs).landmarksMm = { menton, nasion };
+    theirs.simulation!.injections[0].volumeMl = 2;
+    const { plan } = mergePlans(here, here, theirs);
+    expect(Object.keys(region(plan).landmarksMm)).toEqual(["nasion", "menton"]);
+    expect(plan.simulation!.injections[0].volumeMl).toBe(2);
+  });
+
   it("of one field leave what was there first, and tell of the other", () => {
     const ours = edited((plan) => (plan.simulation!.injections[0].volumeMl = 3));
     const theirs = edited((plan) => (plan.simulation!.injections[0].volumeMl = 2));

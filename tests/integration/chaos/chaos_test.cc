@@ -64,7 +64,7 @@ void check_files(const std::string& data) {
               IsEmpty())
       << "files of scans that are in no record, or not whole";
   EXPECT_FALSE(std::filesystem::exists(data + "/set-aside")) << "no death leaves a file that nobody knows";
-  const auto found = server::verify_store(data, [](const server::Verification&) {});
+  const auto found = server::verify_store(data, data + "/lipofill.sqlite", [](const server::Verification&) {});
   ASSERT_TRUE(found.ok()) << found.status();
   for (const server::Damage& damage : found->damages) ADD_FAILURE() << damage.name << ": " << damage.what;
   const auto simulations = (*store)->list_simulations({}, {"", 100'000});

@@ -48,8 +48,8 @@ class PostgresSchemaTest : public ::testing::Test {
     return found;
   }
   void change(const std::string& table, const std::string& statement) {
-    PostgresServer::execute(place_, absl::StrCat("ALTER TABLE ", table, " DISABLE TRIGGER USER; ", statement,
-                                                 "; ALTER TABLE ", table, " ENABLE TRIGGER USER"));
+    PostgresServer::execute(place_, absl::StrCat("ALTER TABLE ", table, " DISABLE TRIGGER ALL; ", statement,
+                                                 "; ALTER TABLE ", table, " ENABLE TRIGGER ALL"));
   }
 
   lipofill::testing::TemporaryDirectory directory_;

@@ -191,7 +191,7 @@ describe("a run", () => {
     await goTo("Run");
     const before = await still("4-before");
     const box = await middle();
-    await page.locator("body").click({ position: { x: 700, y: 24 } });
+    await page.locator("body").click({ position: { x: 860, y: 24 } });
     await page.keyboard.press("Space");
     await page.locator(".state-running").waitFor();
     await page.waitForFunction(

@@ -17,7 +17,7 @@ Point cross(const Point& a, const Point& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Of length 1; none for one that has no length.
+/// Scales a vector to length 1; none for one that has no length.
 std::optional<Point> unit(const Point& v) {
   const double length = std::hypot(v[0], v[1], v[2]);
   if (!(length > kShort)) return std::nullopt;

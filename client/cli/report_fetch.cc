@@ -126,7 +126,7 @@ absl::Status ReportFetch::make_target() {
   return absl::OkStatus();
 }
 
-/// How near the shapes come to the target, and what the face lacks before.
+/// Finds how near the shapes come to the target, and what the face lacks before.
 absl::Status ReportFetch::measure_target() {
   if (!answers_.target) return absl::OkStatus();
   progress_.show("measuring distances to the target");
@@ -166,7 +166,7 @@ v1::MakeForecastRequest ReportFetch::forecast_request() const {
   return request;
 }
 
-/// What is uncertain of the plan, with its sources: a request that is only checked tells it.
+/// Asks what is uncertain of the plan, with its sources: a request that is only checked tells it.
 absl::Status ReportFetch::find_inputs() {
   v1::MakeForecastRequest request = forecast_request();
   request.set_validate_only(true);

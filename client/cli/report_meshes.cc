@@ -129,7 +129,7 @@ absl::StatusOr<double> write_distances(const SurfaceWriter& writer, const char* 
   return largest_size(*distance);
 }
 
-/// What a target has to show, and the largest distance in it.
+/// Writes what a target has to show, and the largest distance in it.
 absl::StatusOr<double> write_target(const ReportFetch& fetch, const SurfaceWriter& writer) {
   const ReportAnswers& answers = fetch.answers();
   double largest = 0.0;

@@ -11,7 +11,7 @@ namespace lipofill::client {
 /// drawn, ReportPictures.problem says why: a report is then one of words and figures.
 ReportPictures draw_report_pictures(const ReportFetch& fetch);
 
-/// What that process does: it draws the pictures that the folder asks for, into the folder.
+/// Does the work of that process: it draws the pictures that the folder asks for, into the folder.
 absl::Status draw_pictures_of_report(const std::filesystem::path& folder);
 
 }  // namespace lipofill::client

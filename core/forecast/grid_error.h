@@ -10,7 +10,7 @@
 
 namespace lipofill::forecast {
 
-/// How far the nominal shape at once is from that of a grid without end.
+/// The error tells how far the nominal shape at once is from that of a grid without end.
 struct GridError {
   double lift = 0.0;      ///< of the largest displacement of the skin, as a share of it
   double pressure = 0.0;  ///< of a zone's mean pressure, as a share of it; the largest over the zones

@@ -1,4 +1,4 @@
-// What is wrong with the numbers of a request for a forecast.
+// This file tells what is wrong with the numbers of a request for a forecast.
 
 #include <set>
 #include <string>

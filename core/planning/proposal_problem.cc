@@ -55,7 +55,7 @@ BoundedProblem linearise(const FitState& state, const VolumeSlopes& slopes, cons
     limits.push_back(bounds.max_total / kPerMl);
   }
   if (std::isfinite(bounds.max_lift)) {
-    // Where each zone lifts most, and where the skin is highest now.
+    // These are where each zone lifts most, and where the skin is highest now.
     std::vector<Index> crowns(zones.size() + 1);
     state.skin.colwise().norm().maxCoeff(&crowns.back());
     for (size_t z = 0; z < zones.size(); ++z) slopes.skin()[z].colwise().norm().maxCoeff(&crowns[z]);

@@ -13,7 +13,7 @@ namespace lipofill::simulation {
 /// there. Deterministic. Checked by tests/verification/coupling/discretisation_test.cc.
 absl::StatusOr<std::unique_ptr<Simulation>> settle_on_half_grid(const Simulation& settled);
 
-/// How many times wider the hexahedra of one grid are than those of the other.
+/// Tells how many times wider the hexahedra of one grid are than those of the other.
 double ratio_of_widths(const Simulation& fine, const Simulation& coarse);
 
 }  // namespace lipofill::simulation

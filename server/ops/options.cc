@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/ops/listen_address.h"
 #include "server/ops/security_options.h"
+#include "server/store/data_directory.h"
 #include "server/store/database_opening.h"
 #include "server/store/postgres_address.h"
 
@@ -192,6 +193,10 @@ Options::Options()
     : workers(static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, 256u))),
       simulation_memory_mb(std::max<uint64_t>(64, machine_memory_mb() / 2)),
       viewer_memory_mb(std::max<uint64_t>(64, machine_memory_mb() / 8)) {}
+
+std::string Options::database() const {
+  return store.empty() ? absl::StrCat(data, "/", kDatabaseFile) : store;
+}
 
 std::vector<Setting> settings_of(Options& options) {
   std::vector<Setting> settings = {

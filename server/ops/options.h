@@ -54,8 +54,8 @@ struct Options {
   bool reflection = true;
   SecuritySettings security;
 
-  /// Where the database is, see open_database().
-  std::string database() const { return store.empty() ? data + "/lipofill.sqlite" : store; }
+  /// Says where the database is, see open_database().
+  std::string database() const;
 };
 
 /// Every setting there is. A new one is a member of Options and an entry here: the file, the

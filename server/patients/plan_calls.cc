@@ -58,7 +58,7 @@ absl::Status check_update_mask(const v1::UpdatePlanRequest& request) {
   return absl::OkStatus();
 }
 
-/// What the plan keeps after an update.
+/// Makes what the plan keeps after an update.
 v1::SavedPlan updated(const v1::SavedPlan& present, const v1::UpdatePlanRequest& request) {
   v1::SavedPlan plan = present;
   const v1::SavedPlan given = kept_part(request.plan());

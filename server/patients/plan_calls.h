@@ -7,7 +7,7 @@
 
 namespace lipofill::server {
 
-/// What each call on plans does, once it was admitted.
+/// Each of these answers one call on plans, once it was admitted.
 absl::StatusOr<v1::SavedPlan> create_plan(Backend& backend, const Principal& caller,
                                           const v1::CreatePlanRequest& request);
 absl::StatusOr<v1::SavedPlan> get_plan(Backend& backend, const std::string& name);

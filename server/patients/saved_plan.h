@@ -10,7 +10,7 @@
 
 namespace lipofill::server {
 
-/// What a plan keeps of what its users gave: the message without what is the daemon's.
+/// Takes what a plan keeps of what its users gave: the message without what is the daemon's.
 v1::SavedPlan kept_part(const v1::SavedPlan& given);
 
 /// Checks what a plan is to keep: every resource that it names is of its patient, its landmarks are

@@ -22,7 +22,6 @@ namespace lipofill::server {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr char kDatabase[] = "lipofill.sqlite";
 constexpr char kSums[] = "SHA256SUMS";
 constexpr char kDamaged[] = "DAMAGED";
 constexpr uint64_t kMaxSumsBytes = uint64_t{256} << 20;
@@ -143,7 +142,8 @@ absl::StatusOr<Sums> read_sums(const fs::path& root) {
     if (path.empty() || leads_out) return absl::DataLossError(absl::StrCat((root / kSums).string(), " is damaged"));
     sums[path.string()] = line.substr(0, 64);
   }
-  if (sums.count(kDatabase) == 0) return absl::DataLossError(absl::StrCat((root / kSums).string(), " has no database"));
+  if (sums.count(kDatabaseFile) == 0)
+    return absl::DataLossError(absl::StrCat((root / kSums).string(), " has no database"));
   return sums;
 }
 
@@ -169,27 +169,27 @@ absl::Status look_for_damage(const fs::path& root, const fs::path& path, BackupR
 }
 
 absl::Status fill(const fs::path& data, const fs::path& partial, const BackupProgress& progress, BackupReport& report) {
-  const auto reader = SqliteDatabase::open((data / kDatabase).string());
+  const auto reader = SqliteDatabase::open((data / kDatabaseFile).string());
   if (!reader.ok()) return reader.status();
   Staging staging(data);
   {
-    const auto writer = SqliteDatabase::open((data / kDatabase).string());
+    const auto writer = SqliteDatabase::open((data / kDatabaseFile).string());
     absl::Status linked = writer.status();
     if (linked.ok()) linked = link_files(**writer, **reader, data, staging);
     if (!linked.ok()) return linked;
   }
-  if (absl::Status copied = (*reader)->copy_to((partial / kDatabase).string()); !copied.ok()) return copied;
+  if (absl::Status copied = (*reader)->copy_to((partial / kDatabaseFile).string()); !copied.ok()) return copied;
   Sums sums;
-  const auto database_sum = copy_and_sum(partial / kDatabase, {}, report);
+  const auto database_sum = copy_and_sum(partial / kDatabaseFile, {}, report);
   if (!database_sum.ok()) return database_sum.status();
-  sums[kDatabase] = *database_sum;
+  sums[kDatabaseFile] = *database_sum;
   for (const std::string& path : staging.linked()) {
     const auto sum = copy_and_sum(staging.file(path), partial / path, report);
     if (!sum.ok()) return sum.status();
     sums[path] = *sum;
     progress(report);
   }
-  if (absl::Status looked = look_for_damage(partial, partial / kDatabase, report); !looked.ok()) return looked;
+  if (absl::Status looked = look_for_damage(partial, partial / kDatabaseFile, report); !looked.ok()) return looked;
   if (!report.damages.empty()) {
     const absl::Status named = write_durably(partial / kDamaged, to_text(report.damages));
     if (!named.ok()) return named;
@@ -202,7 +202,7 @@ absl::Status fill(const fs::path& data, const fs::path& partial, const BackupPro
 absl::StatusOr<BackupReport> back_up_store(const fs::path& data, const fs::path& target,
                                            const BackupProgress& progress) {
   std::error_code error;
-  if (!fs::exists(data / kDatabase, error)) {
+  if (!fs::exists(data / kDatabaseFile, error)) {
     return absl::FailedPreconditionError(absl::StrCat("there is no store in ", data.string()));
   }
   if (fs::exists(target, error)) return absl::FailedPreconditionError(absl::StrCat(target.string(), " exists"));
@@ -235,12 +235,12 @@ absl::StatusOr<BackupReport> restore_store(const fs::path& source, const fs::pat
                                   : absl::DataLossError(absl::StrCat((source / path).string(), " changed meanwhile"));
   };
   for (const auto& [path, sum] : *sums) {
-    if (path == kDatabase) continue;
+    if (path == kDatabaseFile) continue;
     if (absl::Status copied = copy(path, data / path); !copied.ok()) return copied;
   }
   // The database comes last and in one go: without it there is no store.
-  const fs::path draft = data / absl::StrCat(kDatabase, ".new");
-  if (absl::Status copied = copy(kDatabase, draft); !copied.ok()) return copied;
+  const fs::path draft = data / absl::StrCat(kDatabaseFile, ".new");
+  if (absl::Status copied = copy(kDatabaseFile, draft); !copied.ok()) return copied;
   if (absl::Status looked = look_for_damage(data, draft, report); !looked.ok()) return looked;
   std::error_code error;
   fs::rename(draft, directory->database(), error);

@@ -6,6 +6,9 @@
 
 namespace lipofill::server {
 
+/// The file of SQLite has this name in a data directory, and in a backup of one.
+inline constexpr char kDatabaseFile[] = "lipofill.sqlite";
+
 /// The daemon's directory, locked for as long as this lives, so that two daemons never share one
 /// store.
 class DataDirectory {
@@ -18,7 +21,7 @@ class DataDirectory {
   ~DataDirectory();
 
   const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path database() const { return path_ / "lipofill.sqlite"; }
+  std::filesystem::path database() const { return path_ / kDatabaseFile; }
   /// Holds room on the medium, see SpaceReserve.
   std::filesystem::path reserve() const { return path_ / "reserve"; }
   /// Says which store the directory belongs to.

@@ -51,14 +51,14 @@ class Database {
   /// `attempt`th time, counted from 0; waits as long as is fit before that.
   virtual bool may_try_again(int attempt) = 0;
 
-  /// What does not fit together below the level of records, in pages and indexes.
+  /// Lists what does not fit together below the level of records, in pages and indexes.
   virtual absl::StatusOr<std::vector<std::string>> find_faults() = 0;
   /// The version of the schema that its tables have.
   virtual absl::StatusOr<int64_t> schema_version() = 0;
 
-  /// Whether other daemons may change what is in it.
+  /// Tells whether other daemons may change what is in it.
   virtual bool is_shared() const = 0;
-  /// What messages call it.
+  /// Gives the name that messages have for it.
   virtual const std::string& name() const = 0;
 };
 

@@ -8,7 +8,8 @@
 
 namespace lipofill::server {
 
-/// Whether a place is the address of a database of PostgreSQL, "postgresql://...", and not a file.
+/// Tells whether a place is the address of a database of PostgreSQL, "postgresql://...", and not a
+/// file.
 bool is_postgres(const std::string& place);
 
 /// Opens a database that is to be served, checks it, and brings its schema up to date; makes the
@@ -18,7 +19,7 @@ bool is_postgres(const std::string& place);
 /// Checked by tests/unit/server/store/store_test.cc and schema_test.cc.
 absl::StatusOr<std::unique_ptr<Database>> open_database(const std::string& place);
 
-/// Whether there is anything of a store at a place; nothing is made there.
+/// Tells whether there is anything of a store at a place; nothing is made there.
 absl::StatusOr<bool> holds_store(const std::string& place);
 
 /// Opens a database that a daemon may serve meanwhile, to read it as it is. FAILED_PRECONDITION

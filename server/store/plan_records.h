@@ -19,7 +19,7 @@ struct PlanRecord {
   bool is_damaged = false;  ///< in a list: it is not what was written, and no more than its name is told
 };
 
-/// What a plan was.
+/// A revision is what a plan was.
 struct PlanRevisionRecord {
   uint64_t number = 0;
   std::string content_message;

@@ -26,7 +26,7 @@ std::string value_or(const std::map<std::string, std::string>& values, const cha
   return found == values.end() ? otherwise : found->second;
 }
 
-/// What an address gives; nothing where it is not understood.
+/// Reads what an address gives; nothing where it is not understood.
 std::map<std::string, std::string> read_values(const std::string& address) {
   std::map<std::string, std::string> values;
   char* why_not = nullptr;

@@ -20,12 +20,12 @@ constexpr std::chrono::seconds kPatience{3};
 constexpr std::chrono::milliseconds kBetweenConnections{200};
 /// It has to be known whether a change was done, so that is waited for longer.
 constexpr std::chrono::seconds kPatienceInDoubt{10};
-/// Daemons that come between each other again and again are many, and each gets on once in a while.
+/// Many daemons may get in each other's way again and again; each of them has its turn in the end.
 constexpr int kMostAttempts = 100;
 
-/// Settings of a connection that the store counts on. What a frozen daemon holds is taken from it.
-/// Small tables are read by their indexes: who
-/// reads a table whole comes between all who write to it.
+/// The store counts on these settings of a connection. What a frozen daemon holds is taken from it.
+/// Small tables are read by their indexes, for whoever reads a table whole gets in the way of all
+/// who write to it.
 constexpr char kSession[] =
     "SET idle_in_transaction_session_timeout = 3000; SET client_min_messages = error; SET bytea_output = hex; "
     "SET enable_seqscan = off; "
@@ -42,7 +42,7 @@ bool is_any_of(const std::string& state, std::initializer_list<const char*> stat
   return std::find(states.begin(), states.end(), state) != states.end();
 }
 
-/// What a state of PostgreSQL's says, for clients of the store.
+/// Turns a state of PostgreSQL's into a code for clients of the store.
 absl::StatusCode code_of(const std::string& state) {
   if (absl::StartsWith(state, "23")) return absl::StatusCode::kAlreadyExists;
   if (absl::StartsWith(state, "XX00")) return absl::StatusCode::kDataLoss;

@@ -6,7 +6,6 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "absl/strings/str_replace.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/substitute.h"
 #include "server/store/postgres_sql.h"
@@ -33,7 +32,7 @@ CREATE FUNCTION instr(BYTEA, BYTEA) RETURNS INTEGER LANGUAGE sql IMMUTABLE STRIC
 INSERT INTO store VALUES (convert_to(replace(gen_random_uuid()::text, '-', ''), 'UTF8'), 0);
 )";
 
-/// What a record's sum is made of: each column with its kind, and bytes with their length.
+/// A record's sum is made of each column with its kind, and of bytes with their length.
 constexpr char kRowParts[] = R"(
 CREATE FUNCTION row_part(BYTEA) RETURNS BYTEA LANGUAGE sql IMMUTABLE STRICT
   AS $$ SELECT '\x62'::bytea || int8send(length($1)) || $1 $$;
@@ -97,10 +96,6 @@ absl::StatusOr<int64_t> read_number(Database& database, const std::string& sql) 
   const int64_t number = query.next() ? query.integer(0) : 0;
   if (!query.status().ok()) return query.status();
   return number;
-}
-
-std::string with_prefix(const std::string& prefix, const std::string& columns) {
-  return absl::StrCat(prefix, absl::StrReplaceAll(columns, {{", ", absl::StrCat(", ", prefix)}}));
 }
 
 /// The statement that makes row_sum() for rows of the types that this table has. Equal functions

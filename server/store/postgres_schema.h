@@ -13,7 +13,7 @@ namespace lipofill::server {
 /// as it is. Checked by tests/unit/server/store/postgres_schema_test.cc.
 absl::Status bring_postgres_up_to_date(PostgresDatabase& database);
 
-/// Whether the schema of the connection has the tables of a store.
+/// Tells whether the schema of the connection has the tables of a store.
 absl::StatusOr<bool> holds_postgres_store(PostgresDatabase& database);
 
 /// OK where there is a store of this version whose triggers are all there. FAILED_PRECONDITION

@@ -9,11 +9,6 @@
 namespace lipofill::server {
 namespace {
 
-/// The columns, each with a prefix: "NEW." makes "NEW.id, NEW.display_name".
-std::string with_prefix(const std::string& prefix, const std::string& columns) {
-  return absl::StrCat(prefix, absl::StrReplaceAll(columns, {{", ", absl::StrCat(", ", prefix)}}));
-}
-
 std::string is_new_row(const SummedTable& table) {
   const std::vector<std::string> columns = absl::StrSplit(table.key, ", ");
   return absl::StrJoin(columns, " AND ", [](std::string* text, const std::string& column) {
@@ -34,6 +29,10 @@ CREATE TRIGGER $0_are_summed_anew AFTER UPDATE OF $1 ON $0
 )";
 
 }  // namespace
+
+std::string with_prefix(const std::string& prefix, const std::string& columns) {
+  return absl::StrCat(prefix, absl::StrReplaceAll(columns, {{", ", absl::StrCat(", ", prefix)}}));
+}
 
 const std::array<SummedTable, 13> kSummedTables = {{
     {"patients", PATIENT_COLUMNS, "id", "id", "patients/$0"},

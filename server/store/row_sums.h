@@ -55,6 +55,9 @@ std::string make_row_sums(int version);
 /// not: it has the sum of the same bytes, but nothing is written as text, and nothing finds one.
 std::string check_rows(const SummedTable& table, bool has_types);
 
+/// Puts a prefix before each of the columns: "NEW." makes "NEW.id, NEW.display_name".
+std::string with_prefix(const std::string& prefix, const std::string& columns);
+
 /// DATA_LOSS for the record of a resource that is not what was written.
 absl::Status damaged_record(const std::string& name);
 

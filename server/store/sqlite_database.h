@@ -34,7 +34,7 @@ class SqliteDatabase : public Database {
 
   /// Copies the whole database, as this connection sees it now, to a new file.
   absl::Status copy_to(const std::string& path);
-  /// What a code of SQLite's says of the last call.
+  /// Turns a code of SQLite's into a status that has its message of the last call.
   absl::Status error(int code) const;
 
  private:

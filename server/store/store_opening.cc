@@ -54,8 +54,8 @@ std::string other_parts(const DataDirectory& data) {
   return "";
 }
 
-/// What is not as it should be with a file of SQLite, or with a database of PostgreSQL, that holds
-/// no store.
+/// Says what is not as it should be with a file of SQLite, or with a database of PostgreSQL, that
+/// holds no store.
 std::string without_store(const std::string& place) {
   std::error_code error;
   if (is_postgres(place)) return "the database holds no store";

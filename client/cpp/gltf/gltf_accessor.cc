@@ -63,7 +63,7 @@ double read_number(const char* at, int component_type, bool normalised) {
   }
 }
 
-/// Where the elements of an accessor lie, checked.
+/// The place is where the elements of an accessor lie, checked.
 struct Place {
   const std::string* buffer = nullptr;
   size_t begin = 0;

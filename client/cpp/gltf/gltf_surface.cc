@@ -37,7 +37,7 @@ std::array<double, n> numbers_of(const nlohmann::json& node, const char* key, co
   return found == node.end() ? otherwise : found->get<std::array<double, n>>();
 }
 
-/// Where a node puts what is below it (glTF 2.0, 3.5.3).
+/// Finds where a node puts what is below it (glTF 2.0, 3.5.3).
 Affine3d transform_of(const nlohmann::json& node) {
   Affine3d transform = Affine3d::Identity();
   if (node.contains("matrix")) {

@@ -18,7 +18,7 @@ struct ColouredSurface {
   std::vector<std::string> remarks;             ///< what was passed over, a sentence each
 };
 
-/// Whether a file's ending is .glb or .gltf.
+/// Tells whether a file's ending is .glb or .gltf.
 bool is_gltf_name(const std::filesystem::path& file);
 
 /// Reads a .glb or .gltf: triangles, strips and fans, with or without indices, and the colours of

@@ -19,7 +19,7 @@ double dot(const Vector& a, const Vector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// How far a surface reaches along a direction, from and to.
+/// Finds how far a surface reaches along a direction, from and to.
 std::pair<double, double> extent_of(vtkPolyData* surface, const Vector& direction) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;

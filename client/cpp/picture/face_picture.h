@@ -9,7 +9,7 @@
 
 namespace lipofill::client {
 
-/// What a picture shows on a face.
+/// The paint is what a picture shows on a face.
 enum class FacePaint {
   kSkin,      ///< the skin as it is
   kMovement,  ///< its movement, from the field "displacement_mm"

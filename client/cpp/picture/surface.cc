@@ -4,13 +4,12 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyDataNormals.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
-#include "client/cpp/io/vtk_messages.h"
+#include "client/cpp/io/vtp_file.h"
 
 namespace lipofill::client {
 namespace {
@@ -32,15 +31,8 @@ void move_near_origin(vtkPolyData* surface) {
 }  // namespace
 
 absl::StatusOr<Surface> read_plain_surface(const std::filesystem::path& file) {
-  const VtkMessages messages;
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  Surface surface = reader->GetOutput();
-  if (!messages.error().empty() || surface->GetNumberOfPoints() == 0) {
-    return absl::InvalidArgumentError(absl::StrCat("cannot read the mesh ", file.string(), " ", messages.error()));
-  }
-  move_near_origin(surface);
+  auto surface = read_vtp(file);
+  if (surface.ok()) move_near_origin(*surface);
   return surface;
 }
 

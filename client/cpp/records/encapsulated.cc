@@ -28,8 +28,8 @@ void put_code(DcmItem* record, const DcmTagKey& sequence, const char* value, con
   item->putAndInsertString(DCM_CodeMeaning, meaning);
 }
 
-/// What all encapsulated documents have (PS3.3, C.24.2). The document has its length beside it, for
-/// DICOM pads it to an even one.
+/// Makes what all encapsulated documents have (PS3.3, C.24.2). The document has its length beside
+/// it, for DICOM pads it to an even one.
 std::unique_ptr<DcmDataset> encapsulate(const std::string& document, const char* class_uid, const char* mime_type,
                                         const std::string& title) {
   auto record = std::make_unique<DcmDataset>();

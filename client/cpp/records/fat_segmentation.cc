@@ -28,7 +28,7 @@ OFString decimal(double value) {
   return decimal_string(value).c_str();
 }
 
-/// What a call of DCMTK answers, as a status.
+/// Turns what a call of DCMTK answers into a status.
 absl::Status check(const OFCondition& condition, absl::string_view doing) {
   if (condition.good()) return absl::OkStatus();
   return absl::InternalError(absl::StrCat("cannot ", doing, ": ", condition.text()));
@@ -80,7 +80,7 @@ absl::StatusOr<Uint16> add_segment(DcmSegmentation* segmentation, const std::str
   return number;
 }
 
-/// Whether every image is a file of its own that can be named; frames of one file are not.
+/// Tells whether every image is a file of its own that can be named; frames of one file are not.
 bool can_name_images(const RecordStudy& study) {
   const std::vector<DicomFrame>& slices = study.series->stack.slices;
   return !study.image_class_uid.empty() && slices.front().file != slices.back().file &&

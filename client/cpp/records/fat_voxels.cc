@@ -22,7 +22,7 @@ constexpr double kMostOutside = 0.01;
 /// A cell is cut into at most so many parts along each direction.
 constexpr int kMostParts = 64;
 
-/// Where points lie among the voxels of a stack.
+/// The grid tells where points lie among the voxels of a stack.
 class VoxelGrid {
  public:
   explicit VoxelGrid(const DicomStack& stack) : stack_(stack) {

@@ -95,7 +95,7 @@ class ReportTree {
 
   void end_measurements() { tree_.goUp(); }
 
-  /// Whether every item found its place.
+  /// Tells whether every item found its place.
   bool is_whole() const { return whole_; }
 
  private:

@@ -1,30 +1,24 @@
 #include "client/cpp/records/finished_plan.h"
 
 #include <vtkCellData.h>
-#include <vtkNew.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include <map>
 #include <regex>
 
 #include "absl/strings/str_cat.h"
 #include "client/cpp/io/result_folder.h"
-#include "client/cpp/io/vtk_messages.h"
+#include "client/cpp/io/vtp_file.h"
 #include "client/cpp/json_file.h"
 
 namespace lipofill::client {
 namespace {
 
 absl::StatusOr<vtkSmartPointer<vtkPolyData>> read_surface(const std::filesystem::path& file) {
-  const VtkMessages messages;
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  if (!messages.error().empty() || reader->GetOutput()->GetNumberOfCells() == 0) {
-    return absl::InvalidArgumentError(absl::StrCat(file.string(), " cannot be read as a surface with cells",
-                                                   messages.error().empty() ? "" : ": ", messages.error()));
+  auto surface = read_vtp(file);
+  if (surface.ok() && (*surface)->GetNumberOfCells() == 0) {
+    return absl::InvalidArgumentError(absl::StrCat(file.string(), " cannot be read as a surface with cells"));
   }
-  return vtkSmartPointer<vtkPolyData>(reader->GetOutput());
+  return surface;
 }
 
 /// The stems of the films in a folder, and what the films are called.

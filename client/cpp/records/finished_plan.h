@@ -20,7 +20,7 @@ struct PlannedFilm {
   vtkSmartPointer<vtkPolyData> cells;
 };
 
-/// What a folder of results says of a plan that has ended.
+/// This is what a folder of results says of a plan that has ended.
 struct FinishedPlan {
   std::string name;
   nlohmann::json summary;             ///< summary.json

@@ -9,7 +9,7 @@
 
 namespace lipofill::client {
 
-/// Where a PACS is, and who asks it.
+/// The address says where a PACS is, and who asks it.
 struct PacsAddress {
   std::string title;  ///< its application entity title
   std::string host;
@@ -21,7 +21,7 @@ struct PacsAddress {
 /// and ports that are none. Checked by tests/unit/client/records_test.cc.
 absl::StatusOr<PacsAddress> parse_pacs_address(const std::string& text, const std::string& own_title);
 
-/// What to look for; an empty field means any. `*` and `?` stand for any characters.
+/// The query says what to look for; an empty field means any. `*` and `?` stand for any characters.
 struct PacsQuery {
   std::string patient_id;
   std::string accession_number;

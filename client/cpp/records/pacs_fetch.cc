@@ -10,7 +10,7 @@
 namespace lipofill::client {
 namespace {
 
-/// What is fetched: volumes and what records are.
+/// These classes are fetched: those of volumes, and those of records.
 const char* const kFetched[] = {
     UID_CTImageStorage,         UID_EnhancedCTImageStorage,         UID_MRImageStorage,
     UID_EnhancedMRImageStorage, UID_XRay3DAngiographicImageStorage, UID_XRay3DCraniofacialImageStorage,

@@ -9,7 +9,7 @@
 
 namespace lipofill::client {
 
-/// What series a record is of; each kind has one of its own in the study.
+/// The kind says what series a record is of; each kind has one of its own in the study.
 struct RecordKind {
   const char* modality;
   int series_number;

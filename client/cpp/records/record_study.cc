@@ -10,7 +10,7 @@
 namespace lipofill::client {
 namespace {
 
-/// What identifies the patient and the study (PS3.3, C.7.1.1, C.7.2.1 and C.7.2.2).
+/// These tags identify the patient and the study (PS3.3, C.7.1.1, C.7.2.1 and C.7.2.2).
 const DcmTagKey kStudyTags[] = {DCM_SpecificCharacterSet,
                                 DCM_TimezoneOffsetFromUTC,
                                 DCM_PatientName,

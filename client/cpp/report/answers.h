@@ -17,7 +17,7 @@ struct ReportedShape {
   std::optional<v1::Evaluation> evaluation;
 };
 
-/// What a daemon answered for a report, and what it was asked.
+/// The answers hold what a daemon said for a report, and what it was asked.
 struct ReportAnswers {
   v1::Plan plan;
   std::optional<v1::Scan> scan;
@@ -34,7 +34,7 @@ struct ReportAnswers {
   std::string no_delivery;  ///< why there is none
 };
 
-/// What a report says beyond that.
+/// The facts are what a report says beyond that.
 struct ReportFacts {
   std::string date;       ///< YYYY-MM-DD
   std::string pseudonym;  ///< of the patient; may be empty

@@ -121,9 +121,8 @@ inline constexpr Text kVolumesOfPlan = {"The plan as it is, by zone and plane",
 inline constexpr Text kZone = {"zone", "Zone"};
 inline constexpr Text kPlane = {"plane", "Schicht"};
 inline constexpr Text kReserve = {
-    "To prepare is what is injected and a reserve of $0 for what stays in syringes and cannulas (assumed). Zones lose "
-    "fat "
-    "alike; intervals in brackets hold 90 of 100 patients.",
+    "To prepare is what is injected and a reserve of $0 for what stays in syringes and cannulas (assumed). Zones "
+    "lose fat alike; intervals in brackets hold 90 of 100 patients.",
     "Vorzubereiten ist, was injiziert wird, und eine Reserve von $0 für das, was in Spritzen und Kanülen bleibt "
     "(angenommen). Alle Zonen verlieren gleich viel Fett; Intervalle in Klammern enthalten 90 von 100 Patienten."};
 inline constexpr Text kOverCorrection = {"So that the wanted volume is left $0",

@@ -12,7 +12,7 @@ namespace {
 
 constexpr char kPlain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/=#,:+";
 
-/// How many words, from this one on, only say where the first report was made.
+/// Counts how many words, from this one on, only say where the first report was made.
 size_t words_to_leave_out(const std::string& word) {
   for (const char* flag : {"report", "--json", "--quiet", "--keep", "--spawn"}) {
     if (word == flag) return 1;

@@ -11,7 +11,7 @@
 
 namespace lipofill::client {
 
-/// How a figure is shown.
+/// This says how a figure is shown.
 struct Shown {
   int decimals = 2;
   double scale = 1.0;
@@ -33,7 +33,7 @@ class RecordReader {
 
   Language language() const { return language_; }
 
-  /// What a JSON pointer leads to; null where that is nothing.
+  /// Finds what a JSON pointer leads to; null where that is nothing.
   const nlohmann::ordered_json& at(const std::string& field) const;
   bool has(const std::string& field) const { return !at(field).is_null(); }
   size_t size(const std::string& field) const { return at(field).size(); }
@@ -61,7 +61,7 @@ class RecordReader {
   Cell words(std::string text) const { return {{{std::move(text)}}}; }
   /// A cell of words that the daemon has in English.
   Cell english(std::string text) const;
-  /// Whose language an English text stands in: empty where it is that of the document.
+  /// Tells whose language an English text stands in: empty where it is that of the document.
   std::string language_of_english() const { return language_ == Language::kEnglish ? "" : "en"; }
 
   /// A zone, a region or a layer, as people call it.

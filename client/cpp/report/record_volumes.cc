@@ -19,7 +19,7 @@ std::string plane_of(const v1::SimulationSpec& spec, const std::string& name) {
   return "";
 }
 
-/// What the plan puts into each zone, in the order of its injections.
+/// Lists what the plan puts into each zone, in the order of its injections.
 std::vector<v1::ZoneVolumeForecast> planned_zones(const v1::SimulationSpec& spec,
                                                   const v1::RetentionAtMonth& retention) {
   std::vector<v1::ZoneVolumeForecast> zones;

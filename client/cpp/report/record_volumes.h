@@ -6,8 +6,8 @@
 
 namespace lipofill::client {
 
-/// How much to prepare, to inject and to keep, by zone with its plane, and by session: from the
-/// forecast where there is one, else from the plan and the retention of the last month.
+/// Tells how much to prepare, to inject and to keep, by zone with its plane, and by session: from
+/// the forecast where there is one, else from the plan and the retention of the last month.
 nlohmann::ordered_json record_of_volumes(const ReportAnswers& answers, double reserve_share);
 
 }  // namespace lipofill::client

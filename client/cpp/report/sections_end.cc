@@ -1,4 +1,4 @@
-// What to know before relying on the report, and where it comes from.
+// This section says what to know before relying on the report, and where it comes from.
 
 #include <algorithm>
 

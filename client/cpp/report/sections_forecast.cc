@@ -1,4 +1,5 @@
-// What is known of the result, what causes its spread, and what is left after months.
+// These sections say what is known of the result, what causes its spread, and what is left after
+// months.
 
 #include <algorithm>
 
@@ -12,7 +13,7 @@ namespace {
 /// Causes of less than this are not told in words, and no more than three are.
 constexpr double kLeastShare = 0.05;
 constexpr size_t kMostCauses = 3;
-/// Where more of the variance is unexplained the daemon tells no influences.
+/// Where more of the variance than this is unexplained, the daemon tells no influences.
 constexpr double kMostUnexplained = 0.1;
 
 std::string time_at(size_t place) {

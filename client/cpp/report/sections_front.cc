@@ -1,4 +1,4 @@
-// What the report is of, and the figures to look at first.
+// These sections say what the report is of, and the figures to look at first.
 
 #include <cmath>
 

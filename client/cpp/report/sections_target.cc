@@ -1,4 +1,4 @@
-// How near the skin comes to its target, and what it lacks.
+// This section says how near the skin comes to its target, and what it lacks.
 
 #include <algorithm>
 #include <numeric>

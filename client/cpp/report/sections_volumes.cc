@@ -1,4 +1,4 @@
-// How much to prepare, to inject and to keep, and the pressure that comes of it.
+// These sections say how much to prepare, to inject and to keep, and the pressure that comes of it.
 
 #include "absl/strings/str_cat.h"
 #include "client/cpp/report/catalogue.h"
@@ -71,7 +71,7 @@ Table sessions_table(const RecordReader& reader) {
   return table;
 }
 
-/// Where a zone is in a list of the record that has names under `key`.
+/// Finds where a zone is in a list of the record that has names under `key`.
 std::string find_zone(const RecordReader& reader, const std::string& list, const std::string& key,
                       const std::string& name) {
   for (size_t z = 0; z < reader.size(list); ++z) {

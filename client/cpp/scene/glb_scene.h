@@ -8,7 +8,7 @@
 
 namespace lipofill::client {
 
-/// What a GLB shows.
+/// The options say what a GLB shows.
 struct GlbOptions {
   std::string name = {};     ///< of the plan
   bool by_pressure = false;  ///< colours are bands of pressure, else the lift

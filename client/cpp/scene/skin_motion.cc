@@ -4,14 +4,13 @@
 #include <vtkCellArrayIterator.h>
 #include <vtkDataArray.h>
 #include <vtkPointData.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include <regex>
 #include <string>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "client/cpp/io/vtk_messages.h"
+#include "client/cpp/io/vtp_file.h"
 #include "client/cpp/json_file.h"
 #include "client/cpp/picture/surface.h"
 
@@ -56,13 +55,10 @@ std::vector<TimedFile> take_evenly(const std::vector<TimedFile>& all, size_t mos
 }
 
 absl::StatusOr<Surface> read_still(const std::filesystem::path& file) {
-  const VtkMessages messages;
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file.c_str());
-  reader->Update();
-  Surface surface = reader->GetOutput();
-  vtkDataArray* const displacement = surface->GetPointData()->GetArray(kDisplacement);
-  if (!messages.error().empty() || displacement == nullptr || displacement->GetNumberOfComponents() != 3)
+  auto surface = read_vtp(file);
+  if (!surface.ok()) return surface;
+  vtkDataArray* const displacement = (*surface)->GetPointData()->GetArray(kDisplacement);
+  if (displacement == nullptr || displacement->GetNumberOfComponents() != 3)
     return absl::InvalidArgumentError(
         absl::StrCat(file.string(), " is no skin with ", kDisplacement, " on its points"));
   return surface;

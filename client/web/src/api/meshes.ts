@@ -2,20 +2,30 @@
 import type { MeshSlice } from "@wire/frame_service_pb";
 import { ArrayAssembler, view, type WireArray } from "./arrays";
 
+/** Numbers of points: in double precision where they lie far from the origin. */
+export type Coordinates = Float32Array | Float64Array;
+
 export interface Mesh {
   name: string;
   /** [mm] (3 n) */
-  points: Float32Array;
+  points: Coordinates;
   /** (corners n) indices into the points */
   cells: Uint32Array;
   /** of a cell: 3, 4 or 8 */
   corners: number;
 }
 
-/** Points far from the origin come in double precision; the scene draws in single precision. */
-function pointsOf(array: WireArray): Float32Array {
+/** As many numbers as a mesh of some points needs for other points near them. */
+export const likeThese = (points: Coordinates, length: number): Coordinates =>
+  points instanceof Float64Array ? new Float64Array(length) : new Float32Array(length);
+
+/**
+ * Points far from the origin come in double precision and keep it: the toolkit moves them to the
+ * origin when it sends them to the graphics card, which has single precision.
+ */
+function pointsOf(array: WireArray): Coordinates {
   const values = view(array);
-  return values instanceof Float32Array ? values : Float32Array.from(values);
+  return values instanceof Float32Array || values instanceof Float64Array ? values : Float32Array.from(values);
 }
 
 export function meshesOf(arrays: Map<string, WireArray>): Map<string, Mesh> {

@@ -13,7 +13,7 @@ import { pointOf } from "./landmarks";
  */
 export const mostOffMm = 5;
 
-function distanceToMesh([x, y, z]: Point, points: Float32Array): number {
+function distanceToMesh([x, y, z]: Point, points: ArrayLike<number>): number {
   let least = Infinity;
   for (let k = 0; k < points.length; k += 3) {
     const d = (points[k] - x) ** 2 + (points[k + 1] - y) ** 2 + (points[k + 2] - z) ** 2;

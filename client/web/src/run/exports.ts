@@ -10,7 +10,7 @@ export function save(fileName: string, content: string | Blob): void {
 }
 
 /** The surface as it is now, in millimetres, in the frame of the scan. */
-export function surfaceObj(points: Float32Array, cells: Uint32Array, corners: number): string {
+export function surfaceObj(points: ArrayLike<number>, cells: Uint32Array, corners: number): string {
   const lines = ["# Lipofill: simulated skin, millimetres. Research and planning aid, not a medical device."];
   for (let k = 0; k < points.length; k += 3)
     lines.push(`v ${points[k].toFixed(4)} ${points[k + 1].toFixed(4)} ${points[k + 2].toFixed(4)}`);

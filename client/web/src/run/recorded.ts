@@ -7,7 +7,7 @@ import { batch } from "@preact/signals";
 import { ArrayType } from "@wire/frame_service_pb";
 import { SimulationSchema, type Simulation } from "@wire/simulation_pb";
 import type { WireArray } from "../api/arrays";
-import type { Mesh } from "../api/meshes";
+import type { Coordinates, Mesh } from "../api/meshes";
 import type { Frame } from "../api/watch";
 import { close, lookAt } from "./run";
 import { parseSeries } from "./series_csv";
@@ -45,11 +45,15 @@ function floats(name: string, values: ArrayLike<number>, components: number): Wi
   };
 }
 
+/** A file has double precision where a face lies far from the origin. */
+const coordinatesOf = (values: ArrayLike<number>): Coordinates =>
+  values instanceof Float64Array ? values : Float32Array.from(values);
+
 async function readSurface(file: File, name: string): Promise<Surface> {
   const reader = vtkXMLPolyDataReader.newInstance();
   reader.parseAsArrayBuffer(await file.arrayBuffer());
   const data = reader.getOutputData(0) as vtkPolyData;
-  const mesh = { name, points: Float32Array.from(data.getPoints().getData()), ...cellsOf(data.getPolys().getData()) };
+  const mesh = { name, points: coordinatesOf(data.getPoints().getData()), ...cellsOf(data.getPolys().getData()) };
   const fields = new Map<string, WireArray>();
   for (const array of data.getPointData().getArrays()) {
     const field = `${name}.${array.getName().replace(/_(mm|pa)$/, "")}`; // the unit is that of the wire

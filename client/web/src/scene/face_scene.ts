@@ -1,6 +1,6 @@
 // The face on the page: before and after, its region and layers, what a frame colours, what lies
 // under the cursor.
-import type { Mesh } from "../api/meshes";
+import type { Coordinates, Mesh } from "../api/meshes";
 import type { Frame } from "../api/watch";
 import type { ColourMap, Quantity, Rgb } from "./colour_maps";
 import { skinColour } from "./colour_maps";
@@ -49,7 +49,7 @@ export class FaceScene {
   get mesh(): Mesh | undefined {
     return this.faceMesh;
   }
-  get points(): Float32Array | undefined {
+  get points(): Coordinates | undefined {
     return this.face?.points;
   }
 

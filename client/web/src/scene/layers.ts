@@ -1,5 +1,5 @@
 // The layers of tissue as blocks: the outer faces of each layer's hexahedra.
-import type { Mesh } from "../api/meshes";
+import { likeThese, type Coordinates, type Mesh } from "../api/meshes";
 import type { Rgb } from "./colour_maps";
 import { Surface } from "./surface";
 
@@ -47,7 +47,7 @@ export function makeLayers(tissue: Mesh, elementsThrough: number[]): Surface[] {
 }
 
 /** A surface of only those points that its quadrilaterals use. */
-function compact(points: Float32Array, quads: Uint32Array, colour: Rgb): Surface {
+function compact(points: Coordinates, quads: Uint32Array, colour: Rgb): Surface {
   const number = new Map<number, number>();
   const used: number[] = [];
   const cells = quads.map((index) => {
@@ -59,6 +59,8 @@ function compact(points: Float32Array, quads: Uint32Array, colour: Rgb): Surface
     }
     return k;
   });
-  const mesh: Mesh = { name: "layer", points: Float32Array.from(used), cells, corners: 4 };
+  const near = likeThese(points, used.length);
+  near.set(used);
+  const mesh: Mesh = { name: "layer", points: near, cells, corners: 4 };
   return new Surface(mesh, colour);
 }

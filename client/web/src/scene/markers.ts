@@ -35,7 +35,7 @@ function makeBall({ at, colour, radius }: Ball): vtkActor {
 
 function makeLine({ points, colour }: Line): vtkActor {
   const data = vtkPolyData.newInstance();
-  data.getPoints().setData(Float32Array.from(points.flat()), 3);
+  data.getPoints().setData(Float64Array.from(points.flat()), 3);
   data.getLines().setData(Uint32Array.from([points.length, ...points.keys()]));
   const mapper = vtkMapper.newInstance();
   mapper.setInputData(data);

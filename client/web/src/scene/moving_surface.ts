@@ -2,7 +2,7 @@
 // it changes: the part that is still is sent once, however large the face is. Where a machine is
 // too slow that part is drawn coarser.
 import type vtkActor from "@kitware/vtk.js/Rendering/Core/Actor";
-import { trianglesOf, type Mesh } from "../api/meshes";
+import { likeThese, trianglesOf, type Coordinates, type Mesh } from "../api/meshes";
 import type { Rgb } from "./colour_maps";
 import { skinColour } from "./colour_maps";
 import { Surface } from "./surface";
@@ -30,7 +30,7 @@ interface Clusters {
 }
 
 /** Whether a triangle is turned against the normals of its corners. */
-function isTurned(points: Float32Array, normals: Float32Array, [a, b, c]: number[]): boolean {
+function isTurned(points: Coordinates, normals: Float32Array, [a, b, c]: number[]): boolean {
   const edge = (to: number): Point => [0, 1, 2].map((k) => points[3 * to + k] - points[3 * a + k]) as Point;
   const [u, v] = [edge(b), edge(c)];
   const normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
@@ -60,7 +60,7 @@ function partOf(mesh: Mesh, triangles: Uint32Array, isChosen: (first: number) =>
     }
   }
   const vertices = Uint32Array.from(number.keys());
-  const points = new Float32Array(3 * vertices.length);
+  const points = likeThese(mesh.points, 3 * vertices.length);
   gather(mesh.points, vertices, points);
   return { vertices, surface: new Surface({ name: mesh.name, points, cells: Uint32Array.from(cells), corners: 3 }) };
 }
@@ -68,7 +68,7 @@ function partOf(mesh: Mesh, triangles: Uint32Array, isChosen: (first: number) =>
 /**
  * For each vertex the first one in its cell of a grid; vertices that are kept stand for themselves.
  */
-function clustered(points: Float32Array, isKept: Uint8Array): Uint32Array {
+function clustered(points: Coordinates, isKept: Uint8Array): Uint32Array {
   const firstIn = new Map<string, number>();
   const stands = new Uint32Array(isKept.length);
   for (let vertex = 0; vertex < stands.length; ++vertex) {
@@ -82,7 +82,7 @@ function clustered(points: Float32Array, isKept: Uint8Array): Uint32Array {
   return stands;
 }
 
-function gather(from: ArrayLike<number>, vertices: Uint32Array, to: Float32Array | Uint8Array): void {
+function gather(from: ArrayLike<number>, vertices: Uint32Array, to: Coordinates | Uint8Array): void {
   for (let k = 0, at = 0; k < vertices.length; ++k) {
     const source = 3 * vertices[k];
     to[at++] = from[source];
@@ -92,10 +92,10 @@ function gather(from: ArrayLike<number>, vertices: Uint32Array, to: Float32Array
 }
 
 export class MovingSurface {
-  readonly rest: Float32Array;
+  readonly rest: Coordinates;
   readonly triangles: Uint32Array;
   /** as shown [mm] (3 n) */
-  readonly points: Float32Array;
+  readonly points: Coordinates;
   readonly normals: Float32Array;
   /** (3 n) bytes, changed by whoever paints, then shown by recolour() */
   readonly colours: Uint8Array;

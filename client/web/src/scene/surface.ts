@@ -3,14 +3,14 @@ import vtkDataArray from "@kitware/vtk.js/Common/Core/DataArray";
 import vtkPolyData from "@kitware/vtk.js/Common/DataModel/PolyData";
 import vtkActor from "@kitware/vtk.js/Rendering/Core/Actor";
 import vtkMapper from "@kitware/vtk.js/Rendering/Core/Mapper";
-import { trianglesOf, type Mesh } from "../api/meshes";
+import { trianglesOf, type Coordinates, type Mesh } from "../api/meshes";
 import { computeNormals } from "./surface_geometry";
 import { skinColour, type Rgb } from "./colour_maps";
 
 export class Surface {
   readonly actor = vtkActor.newInstance();
   /** as shown [mm] (3 n) */
-  readonly points: Float32Array;
+  readonly points: Coordinates;
   readonly normals: Float32Array;
   /** (3 n) bytes, changed by whoever paints, then shown by recolour() */
   readonly colours: Uint8Array;
@@ -18,7 +18,7 @@ export class Surface {
   private readonly normalArray: vtkDataArray;
   private readonly colourArray: vtkDataArray;
 
-  readonly rest: Float32Array;
+  readonly rest: Coordinates;
   readonly triangles: Uint32Array;
 
   constructor(mesh: Mesh, colour: Rgb = skinColour) {

@@ -3,7 +3,7 @@
 export type Point = [number, number, number];
 
 /** Unit normals of the vertices, by area, written into `out`. */
-export function computeNormals(points: Float32Array, triangles: Uint32Array, out: Float32Array): void {
+export function computeNormals(points: ArrayLike<number>, triangles: Uint32Array, out: Float32Array): void {
   out.fill(0);
   for (let t = 0; t < triangles.length; t += 3) {
     const [a, b, c] = [3 * triangles[t], 3 * triangles[t + 1], 3 * triangles[t + 2]];
@@ -44,7 +44,7 @@ export interface Hit {
 }
 
 /** The first triangle a ray meets (Moeller and Trumbore), from either side. */
-export function castRay(points: Float32Array, triangles: Uint32Array, from: Point, along: Point): Hit | undefined {
+export function castRay(points: ArrayLike<number>, triangles: Uint32Array, from: Point, along: Point): Hit | undefined {
   let best: Hit | undefined;
   const [dx, dy, dz] = along;
   for (let t = 0; t < triangles.length; t += 3) {

@@ -21,7 +21,7 @@ const unit = (v: Point): Point => {
   return v.map((x) => x / length) as Point;
 };
 
-function boxOf(points: Float32Array): { centre: Point; half: Point } {
+function boxOf(points: ArrayLike<number>): { centre: Point; half: Point } {
   const low: Point = [Infinity, Infinity, Infinity];
   const high: Point = [-Infinity, -Infinity, -Infinity];
   for (let k = 0; k < points.length; ++k) {
@@ -55,7 +55,7 @@ export function regionView(skin: Mesh, axes: Axes, flat: boolean): View {
 }
 
 /** From outside of where the skin has moved, weighted by how far. */
-export function liftView(points: Float32Array, normals: Float32Array, moved: Float32Array, axes: Axes): View {
+export function liftView(points: ArrayLike<number>, normals: Float32Array, moved: Float32Array, axes: Axes): View {
   const focus: Point = [0, 0, 0];
   const outward: Point = [0, 0, 0];
   let total = 0;

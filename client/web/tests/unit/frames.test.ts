@@ -4,7 +4,10 @@ import { ArraySliceSchema, ArrayType } from "@wire/frame_service_pb";
 import { ArrayAssembler, toNumbers, view, type WireArray } from "../../src/api/arrays";
 import { meshesOf, trianglesOf } from "../../src/api/meshes";
 import type { Frame } from "../../src/api/watch";
+import { surfaceObj } from "../../src/run/exports";
 import { FrameStore } from "../../src/run/frame_store";
+import { MovingSurface } from "../../src/scene/moving_surface";
+import { castRay } from "../../src/scene/surface_geometry";
 
 function wire(
   values: Float32Array | Uint16Array | Uint32Array,
@@ -73,6 +76,33 @@ describe("meshes", () => {
       ]),
     ).get("skin")!;
     expect([...trianglesOf(mesh)]).toEqual([0, 1, 2, 0, 2, 3]);
+  });
+  it("far from the origin keep their precision, also as they are shown and where a ray meets them", () => {
+    // A survey's coordinates, in which single precision would know no less than 32 mm.
+    const far = [5e8, -3e8, 1e5];
+    const near = [0, 0, 0, 0.25, 0, 0, 0.25, 0.25, 0.0625, 0, 0.25, 0.0625];
+    const doubles = Float64Array.from(near, (value, k) => value + far[k % 3]);
+    const points = { ...wire(new Float32Array(0), ArrayType.FLOAT64, [4, 3]), name: "skin.points" };
+    points.bytes = new Uint8Array(doubles.buffer);
+    const cells = { ...wire(Uint32Array.from([0, 1, 2, 3]), ArrayType.UINT32, [1, 4]), name: "skin.cells" };
+    const mesh = meshesOf(
+      new Map([
+        [points.name, points],
+        [cells.name, cells],
+      ]),
+    ).get("skin")!;
+    const face = new MovingSurface(mesh, { add: () => undefined, remove: () => undefined });
+    const lifted = Float32Array.from([0, 0, 0, 0, 0, 1 / 32, 0, 0, 1 / 32, 0, 0, 0]);
+    face.move(lifted);
+    expect(Array.from(face.points, (value, k) => value - far[k % 3])).toEqual(
+      near.map((value, k) => value + lifted[k]),
+    );
+    const { normals } = new MovingSurface({ ...mesh, points: Float32Array.from(near) }, face["scene"]);
+    face.move();
+    face.normals.forEach((value, k) => expect(value).toBeCloseTo(normals[k], 5));
+    const hit = castRay(mesh.points, trianglesOf(mesh), [far[0] + 0.2, far[1] + 0.1, far[2] + 9], [0, 0, -1])!;
+    expect(hit.point[2] - far[2]).toBeCloseTo(0.025, 6);
+    expect(surfaceObj(face.points, mesh.cells, 4)).toContain("v 500000000.2500 -299999999.7500 100000.0625");
   });
   it("with a cell beyond their points are refused", () => {
     const cells = { ...wire(Uint32Array.from([0, 1, 4]), ArrayType.UINT32, [1, 3]), name: "skin.cells" };

@@ -50,14 +50,8 @@ Ensemble::Ensemble(Equilibrium& equilibrium, const PoolTarget& nominal, const Ei
   nominal_ = equilibrium_.find(nominal, springs, tolerance);
   held_ = equilibrium_.last();
   if (!nominal_.is_whole()) return;
-  factor_at_nominal();
+  factor_at(parts_, held_);
   differentiate();
-}
-
-void Ensemble::factor_at_nominal() {
-  parts_.factor->begin();
-  parts_.balance.bring_to(held_.shape, held_.springs);
-  parts_.response.renew(parts_.balance, held_.springs);
 }
 
 /// A parameter without a tangent moves nothing beforehand.
@@ -168,7 +162,7 @@ void Ensemble::finish(Member& member) {
   member.found = std::move(settled);
   parts.system.scale_moduli(Eigen::VectorXd::Ones(member.change->moduli.size()))
       .IgnoreError();  // the nominal ones are good
-  if (solver.cost().factors > 0 || !is_found) factor_at_nominal();
+  if (solver.cost().factors > 0 || !is_found) factor_at(parts_, held_);
 }
 
 }  // namespace lipofill::equilibrium

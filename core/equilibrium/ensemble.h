@@ -37,7 +37,6 @@ class Ensemble {
  private:
   struct Member;
 
-  void factor_at_nominal();
   void differentiate();
   void begin(const MemberChange& change, Member& member) const;
   void approach(std::vector<Member>& members);

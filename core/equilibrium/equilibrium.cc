@@ -100,6 +100,7 @@ void Equilibrium::remember(Shape shape, const PoolTarget& target, const Eigen::V
 }
 
 Sensitivities Equilibrium::differentiate(const std::vector<TissueBeside>& beside) {
+  factor_at(parts_, last_);
   refine(parts_, last_);
   std::vector<LoadChange> changes;
   std::vector<std::optional<Sensitivity>*> places;

@@ -91,9 +91,10 @@ class Equilibrium {
   bool is_from_rest() const { return is_from_rest_; }
 
   /// Finds what a unit of each parameter does to the last shape; all of its volume is in. The
-  /// parameters are answered side by side.
+  /// parameters are answered side by side, by a factor of that shape: it pays from some four
+  /// parameters on.
   Sensitivities differentiate(const std::vector<TissueBeside>& beside);
-  /// Does the same for the pools' volumes alone.
+  /// Does the same for the pools' volumes alone, by the factor that is at hand.
   std::vector<std::optional<Sensitivity>> differentiate_by_volume();
 
   /// For those that go other ways with the same tissue (ensemble.h).

@@ -8,7 +8,7 @@ namespace lipofill::equilibrium {
 namespace {
 
 /// Derivatives are taken where forces balance to this.
-constexpr double kDerivativeTolerance = 1e-5;
+constexpr double kDerivativeTolerance = 5e-5;
 /// Forces are linear in Young's moduli: a difference over this share is exact but for round-off.
 constexpr double kModulusShare = 0.01;
 
@@ -17,6 +17,12 @@ constexpr double kModulusShare = 0.01;
 bool have_same_unknowns(const Parts& a, const Parts& b) {
   return a.pools.of_cell == b.pools.of_cell &&
          a.system.tissue().dof_of_component() == b.system.tissue().dof_of_component();
+}
+
+void factor_at(Parts& parts, const Found& found) {
+  parts.factor->begin();
+  parts.balance.bring_to(found.shape, found.springs);
+  parts.response.renew(parts.balance, found.springs);
 }
 
 void refine(Parts& parts, Found& found) {

@@ -14,6 +14,9 @@ namespace lipofill::equilibrium {
 /// True where tissues have the same free nodes and cells.
 bool have_same_unknowns(const Parts& a, const Parts& b);
 
+/// Factors at a shape, where the balance is then. There is no factor where the tissue is not
+/// positive definite.
+void factor_at(Parts& parts, const Found& found);
 /// Brings a shape closer to balance where that can be: what a modulus or a thickness does is small
 /// beside the shape. The balance is there.
 void refine(Parts& parts, Found& found);

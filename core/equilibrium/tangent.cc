@@ -91,6 +91,7 @@ class Answer {
 std::vector<std::optional<Tangent>> find_tangents(StaticBalance& balance, HeldResponse& response, const Pools& pools,
                                                   const Shape& shape, const Eigen::VectorXd& springs,
                                                   const std::vector<LoadChange>& changes) {
+  if (!response.has_factor()) return std::vector<std::optional<Tangent>>(changes.size());
   const Eigen::VectorXd force = balance.force();
   const Eigen::VectorXd gap = shape.reduce(pools, balance.gap());
   const Eigen::MatrixXd rows = find_rows(balance.derivative(), pools, shape);

@@ -28,8 +28,8 @@ struct Tangent {
 /// J has terms that the held factor leaves out: an answer is corrected by that factor until what is
 /// left of it, by the rate at which corrections fall, is less than 0.2 %, with J (dx, dp) from a
 /// difference of forces and gaps along (dx, dp). All changes are answered side by side; an answer
-/// does not depend on the others. Nothing for one that does not converge. The balance is at the
-/// shape before and after.
+/// does not depend on the others. Nothing for one that does not converge, nor where there is no
+/// factor. The balance is at the shape before and after.
 /// Checked by tests/unit/equilibrium/tangent_test.cc.
 std::vector<std::optional<Tangent>> find_tangents(StaticBalance& balance, HeldResponse& response, const Pools& pools,
                                                   const Shape& shape, const Eigen::VectorXd& springs,

@@ -144,23 +144,26 @@ struct TrialShape::ThickerTissue {
   std::shared_ptr<const model::FaceModel> model;
   std::unique_ptr<step::CoupledStep> stepper;
   std::unique_ptr<DirectShape> direct;
+  size_t layer = 0;
 };
+
+/// A layer that cannot be thicker has none.
+void TrialShape::make_thicker_tissues() {
+  if (!thicker_.empty()) return;
+  const size_t n_layers = simulation_->impl_->model->layers.size();
+  for (size_t k = 0; k < n_layers; ++k) {
+    if (auto made = make_thicker_tissue(static_cast<int>(k))) thicker_.push_back(*std::move(made));
+  }
+}
 
 std::vector<ShapeSensitivity> TrialShape::find_sensitivities() {
   std::vector<ShapeSensitivity> all;
   if (share_ < 1.0) return all;
   const Simulation::Impl& impl = *simulation_->impl_;
   const std::vector<model::TissueLayerSpec>& layers = impl.model->layers;
-  std::vector<ThickerTissue> thicker;
+  make_thicker_tissues();
   std::vector<equilibrium::TissueBeside> beside;
-  std::vector<size_t> layer_of_beside;
-  for (size_t k = 0; k < layers.size(); ++k) {
-    auto made = make_thicker_tissue(static_cast<int>(k));
-    if (!made) continue;
-    thicker.push_back(*std::move(made));
-    beside.push_back({&thicker.back().direct->equilibrium(), kThickening});
-    layer_of_beside.push_back(k);
-  }
+  for (const ThickerTissue& tissue : thicker_) beside.push_back({&tissue.direct->equilibrium(), kThickening});
   const equilibrium::Sensitivities found = impl.direct->equilibrium().differentiate(beside);
   const auto add = [&](ShapeParameter parameter, const std::string& name,
                        const std::optional<equilibrium::Sensitivity>& sensitivity) {
@@ -169,7 +172,7 @@ std::vector<ShapeSensitivity> TrialShape::find_sensitivities() {
   for (size_t k = 0; k < pools_.size(); ++k) add(ShapeParameter::kPoolVolume, pools_[k].zones, found.by_volume[k]);
   for (size_t k = 0; k < layers.size(); ++k) add(ShapeParameter::kLayerModulus, layers[k].name, found.by_modulus[k]);
   for (size_t k = 0; k < beside.size(); ++k) {
-    add(ShapeParameter::kLayerThickness, layers[layer_of_beside[k]].name, found.by_tissue[k]);
+    add(ShapeParameter::kLayerThickness, layers[thicker_[k].layer].name, found.by_tissue[k]);
   }
   return all;
 }
@@ -259,6 +262,7 @@ Eigen::Matrix3Xd TrialShape::skin_displacement() const {
 std::optional<TrialShape::ThickerTissue> TrialShape::make_thicker_tissue(int layer) const {
   const Simulation::Impl& impl = *simulation_->impl_;
   ThickerTissue thicker;
+  thicker.layer = static_cast<size_t>(layer);
   thicker.model = model::make_thicker(*impl.model, layer, kThickening);
   auto stepper = step::CoupledStep::create(*thicker.model, impl.films, impl.spec);
   if (!stepper.ok()) return {};

@@ -100,6 +100,7 @@ class TrialShape {
   explicit TrialShape(std::unique_ptr<Simulation> simulation);
   absl::StatusOr<plan::InjectionSchedule> schedule_with(const TrialVolumes& volumes) const;
   struct ThickerTissue;
+  void make_thicker_tissues();
   std::optional<ThickerTissue> make_thicker_tissue(int layer) const;
   Eigen::VectorXd pool_shares(size_t injection) const;
   ShapeSensitivity describe(ShapeParameter parameter, const std::string& name,
@@ -112,6 +113,7 @@ class TrialShape {
   bool is_from_rest_ = false;
   std::vector<PoolReport> pools_;
   std::vector<Eigen::VectorXd> injected_;  ///< by the last find(), a film [m3]
+  std::vector<ThickerTissue> thicker_;     ///< made when thickness is asked about first, and kept
 };
 
 }  // namespace lipofill::simulation

@@ -15,6 +15,8 @@ constexpr double kExact = 1e-9;
 constexpr double kDragStep = 0.1e-6;
 constexpr int kDragSteps = 20;
 constexpr int kMembers = 32;
+/// Share of its thickness that a layer is thicker by, for a difference.
+constexpr double kThickening = 0.01;
 /// Moduli of members lie within this factor of the nominal ones.
 constexpr double kLargestModulus = 1.25;
 
@@ -37,11 +39,12 @@ absl::Status EquilibriumBench::set_up(const JawAngle& jaw) {
   auto factor = mechanics::TissueFactor::create(*jaw.model, *stepper_->system(), stepper_->cost());
   if (!factor.ok()) return factor.status();
   factor_ = *std::move(factor);
-  auto made = equilibrium::Equilibrium::create(
-      *jaw.model, placed_.films, stepper_->cells(), *stepper_->system(), stepper_->geometry(),
-      {jaw.settled_shape.gravity, jaw.settled_shape.fat_density}, stepper_->cost());
+  auto made = make_equilibrium(*jaw.model, *stepper_, jaw);
   if (!made.ok()) return made.status();
   equilibrium_ = *std::move(made);
+  for (int layer = 0; layer < stepper_->system()->n_layers(); ++layer) {
+    if (const absl::Status added = add_thicker(layer, jaw); !added.ok()) return added;
+  }
   const mechanics::SimulationState rest = stepper_->rest_state();
   springs_ = rest.spring_is_intact;
   std::vector<Eigen::VectorXd> injected;
@@ -54,6 +57,24 @@ absl::Status EquilibriumBench::set_up(const JawAngle& jaw) {
   target_.volume = equilibrium_->rest_volume() + equilibrium_->pools().sum(on_tissue);
   exact_ = equilibrium_->find(target_, springs_, kExact);
   return exact_.is_whole() ? absl::OkStatus() : absl::InternalError("no equilibrium: " + exact_.reason);
+}
+
+absl::StatusOr<std::unique_ptr<equilibrium::Equilibrium>> EquilibriumBench::make_equilibrium(
+    const model::FaceModel& model, step::CoupledStep& stepper, const JawAngle& jaw) const {
+  return equilibrium::Equilibrium::create(model, placed_.films, stepper.cells(), *stepper.system(), stepper.geometry(),
+                                          {jaw.settled_shape.gravity, jaw.settled_shape.fat_density}, stepper.cost());
+}
+
+absl::Status EquilibriumBench::add_thicker(int layer, const JawAngle& jaw) {
+  Thicker& thicker = beside_.emplace_back();
+  thicker.model = model::make_thicker(*model_, layer, kThickening);
+  auto stepper = step::CoupledStep::create(*thicker.model, placed_.films, spec_);
+  if (!stepper.ok()) return stepper.status();
+  thicker.stepper = *std::move(stepper);
+  auto made = make_equilibrium(*thicker.model, *thicker.stepper, jaw);
+  if (!made.ok()) return made.status();
+  thicker.equilibrium = *std::move(made);
+  return absl::OkStatus();
 }
 
 absl::Status EquilibriumBench::run_round() {
@@ -103,12 +124,19 @@ void EquilibriumBench::measure_drag() {
   }
 }
 
+/// By the volume of each pool and by the stiffness and the thickness of each layer.
 void EquilibriumBench::measure_sensitivities() {
   equilibrium_->find(target_, springs_, kTolerance);
+  std::vector<equilibrium::TissueBeside> beside;
+  for (const Thicker& thicker : beside_) beside.push_back({thicker.equilibrium.get(), kThickening});
   Stopwatch watch;
-  const equilibrium::Sensitivities found = equilibrium_->differentiate({});
+  const equilibrium::Sensitivities found = equilibrium_->differentiate(beside);
   sensitivity_.add(watch.lap());
-  n_sensitivities_ = static_cast<int>(found.by_volume.size() + found.by_modulus.size());
+  n_sensitivities_ = 0;
+  for (const auto* some : {&found.by_volume, &found.by_modulus, &found.by_tissue}) {
+    n_sensitivities_ +=
+        static_cast<int>(std::count_if(some->begin(), some->end(), [](const auto& one) { return one; }));
+  }
 }
 
 /// Building what a member with another thickness stands on.

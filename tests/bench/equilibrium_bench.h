@@ -27,7 +27,18 @@ class EquilibriumBench {
 
  private:
   EquilibriumBench() = default;
+  /// The same tissue with a layer a little thicker.
+  struct Thicker {
+    std::shared_ptr<const model::FaceModel> model;
+    std::unique_ptr<step::CoupledStep> stepper;
+    std::unique_ptr<equilibrium::Equilibrium> equilibrium;
+  };
+
   absl::Status set_up(const JawAngle& jaw);
+  absl::Status add_thicker(int layer, const JawAngle& jaw);
+  absl::StatusOr<std::unique_ptr<equilibrium::Equilibrium>> make_equilibrium(const model::FaceModel& model,
+                                                                             step::CoupledStep& stepper,
+                                                                             const JawAngle& jaw) const;
   absl::Status measure_unit();
   void measure_cold();
   void measure_drag();
@@ -43,6 +54,7 @@ class EquilibriumBench {
   std::unique_ptr<step::CoupledStep> stepper_;
   std::unique_ptr<mechanics::TissueFactor> factor_;
   std::unique_ptr<equilibrium::Equilibrium> equilibrium_;
+  std::vector<Thicker> beside_;  ///< one a layer
   equilibrium::PoolTarget target_;
   Eigen::VectorXd springs_;
   equilibrium::Settled exact_;  ///< with forces to 1e-9

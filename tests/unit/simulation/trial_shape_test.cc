@@ -144,6 +144,21 @@ TEST(TrialShape, ItsSensitivitiesToThicknessAreDifferencesOfModels) {
   }
 }
 
+/// What is kept from one answer to the next changes none, down to the bits.
+TEST(TrialShape, ItsSensitivitiesDoNotDependOnEarlierOnes) {
+  const auto used = make_trial(), fresh = make_trial();
+  ASSERT_TRUE(used->find({{{0, 0.2 * kMillilitre}}, {}}, false).ok());
+  ASSERT_FALSE(used->find_sensitivities().empty());
+  for (const auto* trial : {&used, &fresh}) ASSERT_TRUE((*trial)->find({}, false).ok());
+  const auto again = used->find_sensitivities(), first = fresh->find_sensitivities();
+  ASSERT_EQ(again.size(), first.size());
+  for (size_t k = 0; k < first.size(); ++k) {
+    SCOPED_TRACE(first[k].name);
+    EXPECT_EQ(again[k].skin, first[k].skin);
+    EXPECT_EQ(again[k].pool_pressure, first[k].pool_pressure);
+  }
+}
+
 std::vector<std::string> fields_of(const absl::Status& status) {
   std::vector<std::string> fields;
   for (const FieldViolation& violation : field_violations_of(status)) fields.push_back(violation.field);

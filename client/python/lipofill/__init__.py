@@ -43,7 +43,7 @@ from lipofill.retries import RetryPolicy
 from lipofill.runs import Run
 from lipofill.series import Series
 from lipofill.shapes import Shape
-from lipofill.simulations import Simulation
+from lipofill.simulation import Simulation
 from lipofill.volumes import DicomSeries, Skin, convert_surface, extract_skin, list_series
 from lipofill.watching import Watch
 

@@ -15,7 +15,8 @@ from lipofill.patients import Patients
 from lipofill.plans import Plan, unit_name
 from lipofill.progress import ProgressCallback
 from lipofill.scans import Scans
-from lipofill.simulations import Simulation, Simulations
+from lipofill.simulation import Simulation
+from lipofill.simulations import Simulations
 from lipofill.v1 import model_pb2, simulation_pb2
 
 

@@ -1,10 +1,9 @@
 #include "core/geometry/bone_depth.h"
 
-#include <Eigen/SparseCholesky>
 #include <cmath>
-#include <vector>
 
 #include "absl/strings/str_format.h"
+#include "core/geometry/gap_filling.h"
 #include "core/geometry/ray_tree.h"
 #include "core/geometry/surface_chart.h"
 #include "core/geometry/surface_topology.h"
@@ -23,48 +22,6 @@ Eigen::VectorXd cast_rays(const LayeredGrid& grid, const SurfaceMesh& bone) {
     depth[node] = rays.find_first(skin.col(node), -normals.col(node), kDeepestBone);
   }
   return depth;
-}
-
-/// Neighbours of a node in the grid, at most four.
-template <typename Visit>
-void for_neighbours(const LayeredGrid& grid, int i, int j, const Visit& visit) {
-  if (i > 0) visit(grid.surface_index(i - 1, j));
-  if (i < grid.n_xi) visit(grid.surface_index(i + 1, j));
-  if (j > 0) visit(grid.surface_index(i, j - 1));
-  if (j < grid.n_eta) visit(grid.surface_index(i, j + 1));
-}
-
-/// Makes every value that is not finite the mean of its neighbours. With one finite value at least
-/// the system is positive definite: the grid is connected.
-void fill_harmonically(const LayeredGrid& grid, Eigen::VectorXd& values) {
-  std::vector<int> unknown(values.size(), -1);
-  int n_unknown = 0;
-  for (Eigen::Index node = 0; node < values.size(); ++node) {
-    if (!std::isfinite(values[node])) unknown[node] = n_unknown++;
-  }
-  if (n_unknown == 0) return;
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(n_unknown);
-  for (int j = 0; j <= grid.n_eta; ++j) {
-    for (int i = 0; i <= grid.n_xi; ++i) {
-      const int row = unknown[grid.surface_index(i, j)];
-      if (row < 0) continue;
-      for_neighbours(grid, i, j, [&](int neighbour) {
-        entries.emplace_back(row, row, 1.0);
-        if (unknown[neighbour] < 0) {
-          right[row] += values[neighbour];
-        } else {
-          entries.emplace_back(row, unknown[neighbour], -1.0);
-        }
-      });
-    }
-  }
-  Eigen::SparseMatrix<double> matrix(n_unknown, n_unknown);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::VectorXd filled = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
-  for (Eigen::Index node = 0; node < values.size(); ++node) {
-    if (unknown[node] >= 0) values[node] = filled[unknown[node]];
-  }
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "core/base/field_violations.h"
 #include "core/base/hash.h"
 #include "core/base/units.h"
+#include "core/geometry/gap_filling.h"
 #include "core/model/face_model_check.h"
 #include "core/model/layer_thickness.h"
 #include "core/model/region_footprints.h"
@@ -128,6 +129,7 @@ absl::StatusOr<geometry::FaceGeometrySpec> make_geometry_spec(const FaceModelSpe
   geometry_spec.n_eta = spec.n_eta;
   for (const TissueLayerSpec& layer : spec.layers) {
     geometry_spec.layers.push_back(layer.geometry);
+    geometry_spec.layers.back().thickness = geometry::without_gaps(layer.geometry.thickness);
     // The layer is as thick as it can be until the bone is measured.
     if (layer.down_to_bone) {
       geometry_spec.layers.back().thickness = geometry::ScalarField::constant(layer.down_to_bone->max_thickness);
@@ -276,6 +278,8 @@ absl::StatusOr<std::shared_ptr<const FaceModel>> build_face_model(const FaceMode
   }
   model->thickness = std::move(thickness.ranges);
   model->bone = thickness.bone;
+  std::vector<std::string>& cautions = model->geometry.cautions;
+  cautions.insert(cautions.end(), thickness.remarks.begin(), thickness.remarks.end());
   model->rim = spec.rim;
   lay_base(spec, thickness, *model);
   model->content_hash = compute_content_hash(*model);

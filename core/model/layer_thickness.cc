@@ -1,12 +1,16 @@
 #include "core/model/layer_thickness.h"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "core/anatomy/regional_thickness.h"
+#include "core/anatomy/tissue_presets.h"
 #include "core/geometry/bone_depth.h"
+#include "core/geometry/gap_filling.h"
 #include "core/geometry/node_values.h"
 
 namespace lipofill::model {
@@ -44,6 +48,20 @@ void check_down_to_bone(const TissueLayerSpec& layer, size_t index, bool is_squa
   violations.check_range(field + ".smoothing_mm", layer.down_to_bone->smoothing * 1e3, 0.0, kLongestSmoothingMm, "mm");
   if (is_square) violations.add(field, "needs a scan_region with a bone_scan, the model is a square");
   if (!is_square && !has_bone) violations.add(field, "needs scan_region.bone_scan, which is missing");
+}
+
+void check_gaps(const TissueLayerSpec& layer, size_t index, bool is_square, FieldViolations& violations) {
+  const geometry::ScalarField& field = layer.geometry.thickness;
+  if (layer.down_to_bone || !geometry::has_gaps(field)) return;
+  const std::string name = field_of(index, "thickness_mm.samples");
+  if (is_square) violations.add(name, "has values that are not a number, which needs a scan_region");
+  if (std::all_of(field.values.begin(), field.values.end(), [](double value) { return std::isnan(value); }))
+    violations.add(name, "has no value that is a number: nothing was measured");
+  if (!layer.kind) {
+    violations.add(field_of(index, "kind"),
+                   absl::StrCat("is missing, and the name '", layer.name,
+                                "' tells none: where thickness_mm is not a number the figure of the kind stands"));
+  }
 }
 
 ThicknessRange range_of(const Eigen::VectorXd& values) {
@@ -94,6 +112,36 @@ absl::Status go_down_to_bone(const geometry::LayeredGrid& grid, const FaceModelS
   return absl::OkStatus();
 }
 
+/// The thickness that stands for a layer where it was not measured: of its kind in the region, or
+/// of its kind alone where the landmarks that regions go by are missing.
+Eigen::VectorXd stand_in(const geometry::FaceGeometry& face, anatomy::TissueKind kind, const Eigen::VectorXd& above,
+                         bool* is_regional) {
+  const double figure = anatomy::figures_of(anatomy::TissuePreset::kPaper, kind).thickness;
+  const Eigen::VectorXd general = Eigen::VectorXd::Constant(above.size(), figure);
+  const auto regional = anatomy::compute_regional_thickness(face, kind, above, general);
+  *is_regional = regional.ok();
+  return regional.value_or(general);
+}
+
+/// Fills what was not measured of a layer, and says how much that is.
+Eigen::VectorXd fill_layer(const geometry::FaceGeometry& face, const TissueLayerSpec& layer,
+                           const Eigen::VectorXd& above, LayerThickness& result) {
+  Eigen::VectorXd values = geometry::sample_with_gaps(layer.geometry.thickness, face.grid);
+  const Eigen::Array<bool, Eigen::Dynamic, 1> known = values.array().isFinite();
+  bool is_regional = false;
+  const Eigen::VectorXd general = stand_in(face, *layer.kind, above, &is_regional);
+  geometry::fill_towards(face.grid, general, kMeasuredReach, values);
+  const double share = known.cast<double>().mean();
+  double sum = 0.0;
+  for (Eigen::Index node = 0; node < values.size(); ++node) sum += known[node] ? 0.0 : values[node];
+  const double mean = sum / std::max(1.0, (1.0 - share) * static_cast<double>(values.size()));
+  result.remarks.push_back(absl::StrFormat(
+      "The thickness of %s is measured at %.1f %% of the region; at the other %.1f %% the figure of its kind%s stands, "
+      "%.1f mm on average.",
+      layer.name, 100.0 * share, 100.0 * (1.0 - share), is_regional ? " and region" : "", mean * 1e3));
+  return values;
+}
+
 }  // namespace
 
 void check_thickness_requests(const FaceModelSpec& spec, FieldViolations& violations) {
@@ -103,6 +151,7 @@ void check_thickness_requests(const FaceModelSpec& spec, FieldViolations& violat
     const TissueLayerSpec& layer = spec.layers[l];
     check_regional(layer, l, is_square, has_bone_layer, violations);
     check_down_to_bone(layer, l, is_square, spec.bone.has_value(), violations);
+    check_gaps(layer, l, is_square, violations);
     if (layer.down_to_bone && has_bone_layer) {
       violations.add(field_of(l, "down_to_bone"), "is asked for by a second layer, one can take what the others leave");
     }
@@ -122,6 +171,12 @@ absl::StatusOr<LayerThickness> find_layer_thickness(const geometry::FaceGeometry
   for (size_t l = 0; l < spec.layers.size(); ++l) {
     const TissueLayerSpec& layer = spec.layers[l];
     result.fields.push_back(layer.geometry.thickness);
+    if (!layer.down_to_bone && geometry::has_gaps(layer.geometry.thickness)) {
+      thickness.push_back(fill_layer(face, layer, above, result));
+      result.fields[l] = geometry::field_of_nodes(thickness[l], grid);
+      above += thickness[l];
+      continue;
+    }
     thickness.push_back(geometry::sample_at_nodes(layer.geometry.thickness, grid));
     if (layer.down_to_bone) bone_layer = l;
     if (layer.regional_thickness) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "core/base/field_violations.h"
 
@@ -55,6 +56,11 @@ class MessageChecker {
     if (!std::isfinite(value)) add(path, absl::StrCat("is ", value, ", must be a finite number"));
   }
 
+  /// Tells whether numbers may be none: samples of a layer's thickness where nothing was measured.
+  static bool may_be_unmeasured(const std::string& path) {
+    return absl::EndsWith(path, "].thickness_mm.samples.values");
+  }
+
   void check_enumerator(int value, const FieldDescriptor& field, const std::string& path) {
     if (field.enum_type()->FindValueByNumber(value) == nullptr) {
       add(path, absl::StrCat("is ", value, ", which is no ", field.enum_type()->full_name()));
@@ -86,7 +92,8 @@ class MessageChecker {
           check(access.GetRepeatedMessage(message, &field, i), absl::StrCat(path, "[", i, "]"));
           break;
         case FieldDescriptor::CPPTYPE_DOUBLE:
-          if (const double value = access.GetRepeatedDouble(message, &field, i); !std::isfinite(value)) {
+          if (const double value = access.GetRepeatedDouble(message, &field, i);
+              !std::isfinite(value) && !(std::isnan(value) && may_be_unmeasured(path))) {
             check_number(value, absl::StrCat(path, "[", i, "]"));
           }
           break;

@@ -1,8 +1,12 @@
 #include "server/wire/model_conversion.h"
 
+#include <cmath>
+#include <vector>
+
 #include "absl/strings/str_cat.h"
 #include "core/anatomy/base_give.h"
 #include "core/base/units.h"
+#include "core/geometry/gap_filling.h"
 #include "server/wire/chart_conversion.h"
 #include "server/wire/tissue_figures.h"
 
@@ -82,6 +86,25 @@ model::DownToBone read_down_to_bone(const v1::DownToBone& message) {
   return bounds;
 }
 
+/// A field in which samples that are not a number say that nothing was measured there; the model
+/// checks what else they say. What is wrong about the others is told as of any field.
+geometry::ScalarField read_field_with_gaps(const v1::ScalarField& message, const FieldReader& reader) {
+  v1::ScalarField known = message;
+  if (message.has_samples()) {
+    geometry::ScalarField field;
+    field.values.assign(message.samples().values().begin(), message.samples().values().end());
+    const std::vector<double> filled = geometry::without_gaps(field).values;
+    known.mutable_samples()->mutable_values()->Assign(filled.begin(), filled.end());
+  }
+  geometry::ScalarField field = read_scalar_field(known, kMetresPerMillimetre, reader);
+  if (field.values.size() != static_cast<size_t>(message.samples().values_size())) return field;
+  for (size_t k = 0; k < field.values.size(); ++k) {
+    const double value = message.samples().values(static_cast<int>(k));
+    if (std::isnan(value)) field.values[k] = value;
+  }
+  return field;
+}
+
 void read_thickness(const v1::TissueLayer& message, const std::string& if_missing, const FieldReader& reader,
                     model::TissueLayerSpec& layer) {
   layer.regional_thickness = message.regional_thickness();
@@ -90,8 +113,7 @@ void read_thickness(const v1::TissueLayer& message, const std::string& if_missin
     if (message.has_thickness_mm())
       reader.wrong("thickness_mm", "is given, and so is down_to_bone: one of them at most");
   } else if (message.has_thickness_mm()) {
-    layer.geometry.thickness =
-        read_scalar_field(message.thickness_mm(), kMetresPerMillimetre, reader.below("thickness_mm"));
+    layer.geometry.thickness = read_field_with_gaps(message.thickness_mm(), reader.below("thickness_mm"));
   } else {
     reader.wrong("thickness_mm", if_missing);
   }

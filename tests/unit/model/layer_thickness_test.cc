@@ -128,6 +128,46 @@ TEST(LayerThickness, ASquareHasNeitherBoneNorRegions) {
   EXPECT_THAT(refused_fields(spec), ElementsAre("layers[0].regional_thickness", "layers[1].down_to_bone"));
 }
 
+/// The head of above with 7 mm of muscle measured on the half where xi <= 0.5, and nothing beyond.
+model::FaceModelSpec make_half_measured_head() {
+  model::FaceModelSpec spec = make_spherical_head();
+  spec.bone.reset();
+  spec.layers[1].down_to_bone.reset();
+  spec.layers[1].kind = anatomy::TissueKind::kMuscle;
+  geometry::ScalarField& field = spec.layers[1].geometry.thickness;
+  field = {17, 17, std::vector<double>(17 * 17, 7e-3)};
+  for (size_t k = 0; k < field.values.size(); ++k) {
+    if (k % 17 > 8) field.values[k] = std::nan("");
+  }
+  return spec;
+}
+
+TEST(LayerThickness, WhatWasNotMeasuredTakesTheFigureOfItsKindAndARemark) {
+  const auto model = model::build_face_model(make_half_measured_head(), nullptr);
+  ASSERT_TRUE(model.ok()) << model.status();
+  const geometry::ScalarField& found = (*model)->layers[1].geometry.thickness;
+  ASSERT_EQ(found.n_xi, 17);
+  EXPECT_DOUBLE_EQ(found.values[8], 7e-3) << "measured";
+  EXPECT_GT(found.values[9], 7e-3);
+  EXPECT_GT(found.values[16], 9.5e-3) << "24 mm from what was measured";
+  EXPECT_LT(found.values[16], 10e-3);
+  EXPECT_THAT((*model)->geometry.cautions,
+              Contains(HasSubstr("muscle is measured at 52.9 % of the region; at the other 47.1 % the figure of its "
+                                 "kind stands, 9.")));
+}
+
+TEST(LayerThickness, GapsNeedAKindAndSomethingMeasured) {
+  model::FaceModelSpec unknown = make_half_measured_head();
+  unknown.layers[1].kind.reset();
+  EXPECT_THAT(refused_fields(unknown), ElementsAre("layers[1].kind"));
+  model::FaceModelSpec nothing = make_half_measured_head();
+  for (double& value : nothing.layers[1].geometry.thickness.values) value = std::nan("");
+  EXPECT_THAT(refused_fields(nothing), ElementsAre("layers[1].thickness_mm.samples"));
+  model::FaceModelSpec thick = make_half_measured_head();
+  thick.layers[1].geometry.thickness.values[0] = 0.2;
+  EXPECT_THAT(refused_fields(thick), ElementsAre("layers[1].thickness_mm")) << "what is known keeps its bounds";
+}
+
 TEST(LayerThickness, PlainLayersAreLaidAsTheirFieldsSay) {
   model::FaceModelSpec spec = make_small_model_spec();
   spec.layers[1].geometry.thickness = {2, 1, {6e-3, 8e-3}};

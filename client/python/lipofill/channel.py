@@ -84,6 +84,11 @@ class Channel:
         """Closes the connection. What runs on the daemon runs on."""
         self._grpc.close()
 
+    @property
+    def credentials(self) -> Credentials:
+        """What protects the way to the daemon and says who calls."""
+        return self._credentials
+
     def metadata(self) -> List[Tuple[str, str]]:
         """What goes with every call: who calls."""
         return self._credentials.metadata()

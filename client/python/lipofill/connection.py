@@ -13,6 +13,7 @@ from lipofill.patients import Patients
 from lipofill.plans import Plan
 from lipofill.progress import ProgressCallback
 from lipofill.proposals import Proposals
+from lipofill.reports import Reports
 from lipofill.retries import RetryPolicy
 from lipofill.runs import Collections, Run
 from lipofill.saved_plans import SavedPlans
@@ -45,6 +46,8 @@ class Connection(Channel):
     ----------
     patients, scans, models, plans, targets, proposals, forecasts, simulations, operations
         What the daemon holds.
+    reports
+        Pages of all that is known of a plan, see Reports.
     patient_stub, plan_stub, simulation_stub, frame_stub, operation_stub, planning_stub,
     forecast_stub
         The generated stubs, for ``call``.
@@ -67,6 +70,7 @@ class Connection(Channel):
         self.targets = Targets(self, self.operations)
         self.proposals = Proposals(self, self.operations)
         self.forecasts = Forecasts(self, self.operations)
+        self.reports = Reports(self)
         self.simulations = Simulations(self)
 
     def run(

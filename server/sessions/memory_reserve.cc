@@ -16,19 +16,9 @@ constexpr size_t kBlocks = 4;
 
 std::array<std::atomic<void*>, kBlocks> blocks{};
 
-bool give_up_block() {
-  for (std::atomic<void*>& block : blocks) {
-    void* given = block.exchange(nullptr);
-    if (given == nullptr) continue;
-    ::munmap(given, kBlockBytes);
-    return true;
-  }
-  return false;
-}
-
 /// The allocation is tried again when this returns.
 void find_memory() {
-  if (MayFail::is_set() || !give_up_block()) throw std::bad_alloc();
+  if (MayFail::is_set() || !MemoryReserve::give_up()) throw std::bad_alloc();
 }
 
 }  // namespace
@@ -46,6 +36,16 @@ void MemoryReserve::refill() {
     void* none = nullptr;
     if (!block.compare_exchange_strong(none, kept)) ::munmap(kept, kBlockBytes);
   }
+}
+
+bool MemoryReserve::give_up() {
+  for (std::atomic<void*>& block : blocks) {
+    void* given = block.exchange(nullptr);
+    if (given == nullptr) continue;
+    ::munmap(given, kBlockBytes);
+    return true;
+  }
+  return false;
 }
 
 bool MemoryReserve::is_short() {

@@ -14,6 +14,9 @@ class MemoryReserve {
   static void set_up();
   /// Puts back what was used, where there is room again; to be called about once a second.
   static void refill();
+  /// Lets a block of it go, so that an allocation that failed may be tried again. False where
+  /// there is none.
+  static bool give_up();
   /// True while some of it has been used.
   static bool is_short();
 };

@@ -2,6 +2,8 @@
 // words; the daemon goes on, and when there is memory again so does everything else.
 
 #include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -155,6 +157,18 @@ class ScarceMemoryTest : protected ScarceMemory, public RunTest {
     EXPECT_EQ(run("last").state(), v1::Simulation::FINISHED);
   }
 
+  /// The daemon's address space may grow by so much from here on.
+  void limit_growth(size_t bytes) const {
+    std::ifstream sizes("/proc/" + std::to_string(daemon_->pid()) + "/statm");
+    rlim_t pages = 0;
+    ASSERT_TRUE(sizes >> pages);
+    limit_address_space(pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) + bytes);
+  }
+  void limit_address_space(rlim_t bytes) const {
+    const rlimit limit = {bytes, RLIM_INFINITY};
+    ASSERT_EQ(::prlimit(daemon_->pid(), RLIMIT_AS, &limit, nullptr), 0);
+  }
+
   const std::string bytes_ = sheet_obj(150);  // of about 1 MB
   v1::Scan scan_;
   int built_ = 0;
@@ -171,6 +185,23 @@ TEST_F(ScarceMemoryTest, EverySecondOrThirdLargeAllocationFails) {
   }
   end();
   EXPECT_GT(refused_, 0);
+  expect_all_works();
+}
+
+// The limit is the system's own: nothing that is allocated is spared, the transport's pieces, the
+// algebra's blocks and the stacks of new threads among it.
+TEST_F(ScarceMemoryTest, AddressSpaceIsUsedUp) {
+  const std::string large = sheet_obj(700);
+  for (const size_t mebibytes : {64, 16, 0}) {
+    limit_growth(mebibytes << 20);
+    call_each(2);
+    if (HasFatalFailure()) return;
+    v1::Scan scan;
+    const grpc::Status status = upload("patients/anna", v1::OBJ, large, scan);
+    EXPECT_EQ(status.error_code(), StatusCode::RESOURCE_EXHAUSTED) << mebibytes << " MiB: " << status.error_message();
+    ASSERT_TRUE(daemon_lives()) << daemon_->log();
+  }
+  limit_address_space(RLIM_INFINITY);
   expect_all_works();
 }
 

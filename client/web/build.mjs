@@ -1,13 +1,14 @@
 // Builds the page and its gateway into build/web: types of the wire from the schema, a check of all
-// types, the page, the gateway as one file. Packages are those that deploy/setup put into
-// build/web/node_modules.
+// types, the page, its files compressed, the gateway as one file. Packages are those that
+// deploy/setup put into build/web/node_modules.
 //
 //   node client/web/build.mjs            all of it
 //   node client/web/build.mjs --wire     only the types of the wire
 import { execFileSync } from "node:child_process";
-import { mkdirSync, readdirSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { brotliCompressSync, gzipSync } from "node:zlib";
 
 const source = fileURLToPath(new URL(".", import.meta.url));
 const root = join(source, "../..");
@@ -30,6 +31,16 @@ function makeWireTypes() {
   ]);
 }
 
+/** Scripts and styles also as browsers take them: the gateway sends those. */
+function compressPage() {
+  const assets = join(out, "page/assets");
+  for (const name of readdirSync(assets).filter((one) => /\.(js|css)$/.test(one))) {
+    const bytes = readFileSync(join(assets, name));
+    writeFileSync(join(assets, `${name}.br`), brotliCompressSync(bytes));
+    writeFileSync(join(assets, `${name}.gz`), gzipSync(bytes, { level: 9 }));
+  }
+}
+
 async function bundleGateway() {
   const { build } = await import("esbuild");
   await build({
@@ -49,6 +60,7 @@ makeWireTypes();
 if (!process.argv.includes("--wire")) {
   run(tool("tsc"), ["--noEmit"]);
   run(tool("vite"), ["build", "--logLevel", "warn"]);
+  compressPage();
   await bundleGateway();
   writeFileSync(join(out, "built"), `${new Date().toISOString()}\n`);
 }

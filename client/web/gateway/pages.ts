@@ -38,13 +38,52 @@ function refuse(response: ServerResponse, status: number, text: string): void {
   response.end(`${text}\n`);
 }
 
+/** Of the best first: the ending of the file beside a file that is the same, compressed. */
+const compressions = [
+  { encoding: "br", ending: ".br" },
+  { encoding: "gzip", ending: ".gz" },
+];
+
+/** Whether a client takes an encoding (RFC 9110, 12.5.3); one with weight 0 it does not. */
+export function takesEncoding(header: string | undefined, encoding: string): boolean {
+  const offers = (header ?? "").split(",").map((offer) =>
+    offer
+      .trim()
+      .toLowerCase()
+      .split(/\s*;\s*/),
+  );
+  const own = offers.find(([name]) => name === encoding) ?? offers.find(([name]) => name === "*");
+  return own !== undefined && !own.slice(1).some((weight) => /^q=0(\.0*)?$/.test(weight));
+}
+
+interface Found {
+  path: string;
+  size: number;
+  encoding?: string;
+}
+
+/** The file, or the same compressed where that was made with the page and the client takes it. */
+async function find(file: string, accepted: string | undefined): Promise<Found | undefined> {
+  const plain = await stat(file).catch(() => undefined);
+  if (!plain?.isFile()) return undefined;
+  for (const { encoding, ending } of compressions) {
+    if (!takesEncoding(accepted, encoding)) continue;
+    const small = await stat(file + ending).catch(() => undefined);
+    if (small?.isFile()) return { path: file + ending, size: small.size, encoding };
+  }
+  return { path: file, size: plain.size };
+}
+
 async function sendFile(file: string, request: IncomingMessage, response: ServerResponse): Promise<void> {
-  const found = await stat(file).catch(() => undefined);
-  if (!found?.isFile()) return refuse(response, 404, "not found");
+  const accepted = request.headers["accept-encoding"];
+  const found = await find(file, Array.isArray(accepted) ? accepted.join(",") : accepted);
+  if (found === undefined) return refuse(response, 404, "not found");
   const lasting = file.includes("/assets/"); // named by their content
   response.writeHead(200, {
     "content-type": types[extname(file)] ?? "application/octet-stream",
     "content-length": found.size,
+    ...(found.encoding === undefined ? {} : { "content-encoding": found.encoding }),
+    vary: "accept-encoding",
     "cache-control": lasting ? "public, max-age=31536000, immutable" : "no-cache",
     "content-security-policy": policy,
     "x-content-type-options": "nosniff",
@@ -56,7 +95,7 @@ async function sendFile(file: string, request: IncomingMessage, response: Server
   }
   // Whoever does not read lets the file go.
   response.setTimeout(60_000, () => response.destroy());
-  await pipeline(createReadStream(file), response).catch(() => response.destroy());
+  await pipeline(createReadStream(found.path), response).catch(() => response.destroy());
 }
 
 export function servePages(page: string, samples: string) {

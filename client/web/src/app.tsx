@@ -11,6 +11,7 @@ import { redoChange, undoChange } from "./keyboard";
 import { canRedo, canUndo, patientName, plan } from "./plan/state";
 import { recorded } from "./run/state";
 import { notice } from "./activity";
+import { presenting } from "./stage/stage_state";
 import { Planner } from "./planner";
 
 const asking = signal(false);
@@ -88,7 +89,7 @@ export function App() {
   const onPlan = page.value === "plan";
   return (
     <>
-      <header class="top">
+      <header class="top" hidden={presenting.value && onPlan}>
         <span class="brand">
           <img src="./icon.svg" alt="" width="26" height="26" />
           Lipofill

@@ -3,7 +3,7 @@ import { lookAt, runOrPause } from "./run/run";
 import { frame, hasResult, store } from "./run/state";
 import { brushMm, tool } from "./plan/tools";
 import { redo, undo } from "./plan/state";
-import { compare, quantity, step, stepNames } from "./stage/stage_state";
+import { compare, presenting, quantity, step, stepNames } from "./stage/stage_state";
 
 function stepThroughTime(by: number): void {
   const all = store.frames;
@@ -36,6 +36,7 @@ export function onKey(event: KeyboardEvent): void {
   const target = event.target as HTMLElement;
   if (event.ctrlKey || event.metaKey) return changeBack(event, target);
   if (event.altKey) return;
+  if (event.key === "Escape" && tool.value.kind === "turn") presenting.value = false;
   if (event.key === "Escape") tool.value = { kind: "turn" };
   if (target.closest("input[type=number], input[type=text], input[type=password], select, dialog")) return;
   const itsOwn =

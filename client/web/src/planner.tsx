@@ -20,7 +20,7 @@ import { complaintsElsewhere, complaintsHere } from "./widgets/complaints";
 import { onKey } from "./keyboard";
 import { RunPanel } from "./panels/run_panel";
 import { Stage } from "./stage/stage";
-import { quantity, step, type Step } from "./stage/stage_state";
+import { dark, presenting, quantity, step, type Step } from "./stage/stage_state";
 import { Timeline } from "./stage/timeline";
 import { TissuePanel } from "./panels/tissue_panel";
 
@@ -126,7 +126,9 @@ export function Planner() {
   }, []);
   const now = step.value;
   return (
-    <main class={`planner step-${now}`}>
+    <main
+      class={`planner step-${now} ${presenting.value ? "presenting" : ""} ${presenting.value && dark.value ? "dark" : ""}`}
+    >
       <div class="panel">
         <Steps />
         <div class="panel-body" data-violations={violations.value.length}>

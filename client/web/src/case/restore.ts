@@ -6,8 +6,10 @@ import { attempt, remark } from "../activity";
 import { patients, plans, simulations } from "../api/client";
 import { collectMeshes } from "../api/meshes";
 import { builtFrom, model, patient, plan, replacePlan, scan, scanFile, setModel, startPlan } from "../plan/state";
+import { goToMoment, keepMoment } from "../run/kept_moment";
 import { open } from "../run/run";
-import { planOfRun, recorded, simulation } from "../run/state";
+import { frame, lookedAt, planOfRun, recorded, simulation } from "../run/state";
+import { holdCamera, stillCamera, stillMoment } from "../stage/camera";
 import { step } from "../stage/stage_state";
 import { tool } from "../plan/tools";
 import { listTargets, showTarget } from "../target/make_target";
@@ -32,6 +34,8 @@ export const address = computed<Address>(() => ({
   plan: saved.value?.name ?? "",
   scan: scan.value?.name ?? "",
   run: recorded.value === "" ? (simulation.value?.name ?? "") : "",
+  camera: stillCamera.value,
+  momentS: stillMoment.value,
 }));
 
 /** Everything that the daemon does not know. */
@@ -49,6 +53,14 @@ function keepNow(): void {
     etag: saved.value?.etag ?? "",
     hasNews: hasNews.value,
   });
+  keepMoment(address.value.run, lookedAt.value === undefined ? undefined : frame.value);
+}
+
+/** The moment of the run that an address names. */
+function restoreMoment({ run, momentS }: Address): void {
+  if (momentS === undefined || run === "" || run !== simulation.value?.name) return;
+  if (goToMoment(run, momentS)) return;
+  remark.value = `The moment at ${momentS.toFixed(2)} s is not held any more: the newest is shown.`;
 }
 
 async function showKept(of: string, kept: Kept): Promise<void> {
@@ -129,8 +141,11 @@ async function goToAddress(isFirst = false): Promise<void> {
   batch(() => {
     [page.value, step.value, tool.value] = [to.page, to.step, { kind: "turn" }];
   });
+  holdCamera(to.camera, to.scan);
   if (to.page === "plan" && (isFirst || !isSameCase(to, address.value)))
     await attempt("Opening the case", () => bring(to));
+  restoreMoment(to);
+  [stillCamera.value, stillMoment.value] = [to.camera, lookedAt.value];
   // What is gone cannot be brought.
   if (to.page === page.value) history.replaceState(null, "", writeAddress(address.value));
   restoring.value = false;
@@ -161,7 +176,7 @@ export function bindAddress(): () => void {
     effect(say),
     bindKeeper(),
     effect(() => {
-      void [plan.value, scan.value, model.value, target.value, planOfRun.value, saved.value];
+      void [plan.value, scan.value, model.value, target.value, planOfRun.value, saved.value, stillMoment.value];
       clearTimeout(timer);
       timer = setTimeout(keepNow, keptAfterMs);
     }),

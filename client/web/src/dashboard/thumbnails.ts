@@ -1,10 +1,9 @@
 // Small pictures of many simulations, one after the other: a stream is opened for a frame and left
 // again, so that a wall of them takes one connection and one canvas.
-import { ArrayType } from "@wire/frame_service_pb";
 import { Simulation_State, type Simulation } from "@wire/simulation_pb";
-import { ArrayAssembler, toNumbers } from "../api/arrays";
-import { frames } from "../api/client";
-import { meshesOf, type Mesh } from "../api/meshes";
+import { toNumbers } from "../api/arrays";
+import { lastFrame } from "../api/last_frame";
+import type { Mesh } from "../api/meshes";
 import { mapFor, paint, skinColour } from "../scene/colour_maps";
 import { largestOf } from "../scene/face_colours";
 import { viewOf } from "../scene/outside_view";
@@ -95,30 +94,10 @@ export class Thumbnails {
   }
 
   private async fetch(simulation: string): Promise<{ mesh: Mesh; displacement: Float32Array }> {
-    const assembler = new ArrayAssembler();
-    const enough = new AbortController();
-    const end = (): void => enough.abort();
-    this.leave.signal.addEventListener("abort", end);
-    let mesh: Mesh | undefined;
-    try {
-      for await (const { message } of frames.watch(
-        { simulation, fields: ["skin.displacement"], fieldType: ArrayType.UINT16 },
-        { signal: enough.signal },
-      )) {
-        if (message.case === "mesh") {
-          message.value.arrays.forEach((array) => assembler.add(array));
-          if (message.value.last) mesh = meshesOf(assembler.take()).get("skin");
-        } else if (message.case === "frame") {
-          message.value.fields.forEach((array) => assembler.add(array));
-          const field = message.value.last ? assembler.take().get("skin.displacement") : undefined;
-          if (field && mesh) return { mesh, displacement: toNumbers(field) };
-        }
-      }
-    } finally {
-      this.leave.signal.removeEventListener("abort", end);
-      end();
-    }
-    throw new Error(`${simulation} showed no frame`);
+    const { meshes, frame } = await lastFrame(simulation, ["skin.displacement"], this.leave.signal);
+    const [mesh, field] = [meshes.get("skin"), frame.fields.get("skin.displacement")];
+    if (!mesh || !field) throw new Error(`${simulation} has no skin`);
+    return { mesh, displacement: toNumbers(field) };
   }
 
   dispose(): void {

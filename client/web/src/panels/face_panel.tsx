@@ -5,11 +5,81 @@ import { writeMarkups } from "../plan/landmark_files";
 import { pointOf, writeLandmarks } from "../plan/landmarks";
 import { parsePlan } from "../plan/plan_file";
 import { editPlan, plan, region, scan } from "../plan/state";
-import { tell } from "../activity";
-import { tool } from "../plan/tools";
+import { busy, tell } from "../activity";
+import { confirm, confirmAll, exchangeSides, guess, missing, openGuesses, swapped } from "../landmarks/state";
+import { goOn, tool } from "../plan/tools";
+import { showLabels } from "../stage/stage_state";
 import { save } from "../run/exports";
-import { FileButton, Section, TextField } from "../widgets/fields";
+import { CheckField, FileButton, Section, TextField } from "../widgets/fields";
 import { CaseSection } from "./case_section";
+import { LandmarkPicture } from "./landmark_picture";
+
+/** A first guess, one click a point in order, and what looks wrong. */
+function Assistance() {
+  const open = Object.keys(openGuesses.value).length;
+  const pairs = swapped.value;
+  return (
+    <>
+      <div class="row wrap">
+        <button type="button" class="button" disabled={busy.value !== undefined} onClick={() => void guess()}>
+          Guess the landmarks
+        </button>
+        {missing.value.length > 0 && (
+          <button type="button" class="button" onClick={() => goOn()}>
+            Place one by one
+          </button>
+        )}
+        {open > 0 && (
+          <button type="button" class="button primary" onClick={confirmAll}>
+            Confirm {open} guesses
+          </button>
+        )}
+      </div>
+      {open > 0 && (
+        <p class="hint">
+          Guesses are orange. Half of them are nearer than the figure beside them: look at each, drag it where it
+          belongs, and confirm.
+        </p>
+      )}
+      {pairs.length > 0 && (
+        <div class="warning" role="alert">
+          <p>
+            Left and right look swapped: {pairs.map((name) => readable(name).toLowerCase()).join(", ")}. Left is the
+            patient's left.
+          </p>
+          <button type="button" class="button small" onClick={exchangeSides}>
+            Swap them
+          </button>
+        </div>
+      )}
+      <CheckField
+        label="Labels on the face"
+        value={showLabels.value}
+        onChange={(value) => (showLabels.value = value)}
+      />
+    </>
+  );
+}
+
+function Guided({ name }: { name: string }) {
+  const guided = tool.value.kind === "landmark" && tool.value.guided === true;
+  return (
+    <div class="guided">
+      <LandmarkPicture name={name} />
+      <div>
+        <p>
+          <b>{readable(name)}</b>
+        </p>
+        <p class="hint">{landmarkHints[name.replace(/_(left|right)$/, "")] ?? ""}</p>
+        {guided && (
+          <button type="button" class="button small" onClick={() => goOn(name)}>
+            Skip
+          </button>
+        )}
+      </div>
+    </div>
+  );
+}
 
 function Landmarks() {
   const points = region.value?.landmarksMm ?? {};
@@ -17,7 +87,7 @@ function Landmarks() {
   const placing = tool.value.kind === "landmark" ? tool.value.name : "";
   return (
     <Section title="Landmarks" aside={<span class="quiet">{Object.keys(points).length} set</span>}>
-      <div class="row">
+      <div class="row wrap">
         <FileButton
           label="From file…"
           accept=".json,.fcsv,.pp,.csv,.tsv,.txt"
@@ -49,9 +119,11 @@ function Landmarks() {
           Save for Slicer
         </button>
       </div>
-      <ul class="landmarks">
+      <Assistance />
+      {placing !== "" && <Guided name={placing} />}
+      <ul class={`landmarks ${Object.keys(openGuesses.value).length > 0 ? "one-column" : ""}`}>
         {names.map((name) => (
-          <li key={name} class={points[name] ? "set" : ""}>
+          <li key={name} class={points[name] ? "set" : openGuesses.value[name] ? "guessed" : ""}>
             <button
               type="button"
               aria-pressed={placing === name}
@@ -60,7 +132,19 @@ function Landmarks() {
             >
               <span class="dot" aria-hidden="true" />
               {readable(name)}
+              {openGuesses.value[name] && <span class="quiet">±{openGuesses.value[name].uncertaintyMm} mm</span>}
             </button>
+            {openGuesses.value[name] && (
+              <button
+                type="button"
+                class="icon"
+                title="Confirm the guess"
+                aria-label={`Confirm ${readable(name)}`}
+                onClick={() => confirm(name)}
+              >
+                ✓
+              </button>
+            )}
             {points[name] && (
               <button
                 type="button"

@@ -109,8 +109,9 @@ export function aroundOf(key: string, side: Side): Around {
   return create(AroundSchema, { regions: parts[key].zones.map((name) => `${name}_${side}`) });
 }
 
-const midline = new Set(["nasion", "pronasale", "subnasale", "pogonion", "menton"]);
-const sided = (name: string, side: Side): string => (midline.has(name) ? name : `${name}_${side}`);
+/** Landmarks between both sides. */
+export const midline = ["nasion", "pronasale", "subnasale", "pogonion", "menton"];
+const sided = (name: string, side: Side): string => (midline.includes(name) ? name : `${name}_${side}`);
 
 /** Landmarks without which a region cannot be placed. */
 export function landmarksOf(region: string, side: Side): string[] {

@@ -5,14 +5,19 @@ import { SkinPointSchema, type SkinPoint } from "@wire/geometry_pb";
 import { SkinPathSchema, SkinPointsSchema } from "@wire/simulation_pb";
 import type { Point } from "../scene/surface_geometry";
 import { vectorOf } from "./landmarks";
-import { chart, editPlan, plan } from "./state";
+import { landmarkHints, landmarkNames } from "./anatomy";
+import { chart, editPlan, plan, region } from "./state";
+
+/** What is measured: straight, along the skin, or between two lines. */
+export type Ruler = "distance" | "skin" | "angle";
 
 export type Tool =
   | { kind: "turn" }
-  | { kind: "landmark"; name: string }
+  | { kind: "landmark"; name: string; guided?: boolean }
   | { kind: "corner"; index: number }
   | { kind: "site"; index: number }
   | { kind: "live_site" }
+  | { kind: "measure"; ruler: Ruler }
   | { kind: "wall"; film: number; index: number }
   | { kind: "ligament"; index: number }
   | { kind: "paint"; film: number; zone: number; erase: boolean };
@@ -25,12 +30,16 @@ export const liveSite = signal<SkinPoint | undefined>(undefined);
 export function toolHint(now: Tool): string {
   switch (now.kind) {
     case "landmark":
-      return `Click on the face: ${now.name.replace(/_/g, " ")}`;
+      return `Click on the face: ${now.name.replace(/_/g, " ")}${hintOf(now.name)}`;
     case "corner":
       return `Click where corner ${now.index + 1} of the region goes`;
     case "site":
     case "live_site":
       return "Click where the cannula delivers";
+    case "measure":
+      return now.ruler === "angle"
+        ? "Click three places: the angle is at the second; Esc when done"
+        : "Click two places on the face; Esc when done";
     case "wall":
       return "Click points of the wall one after the other; Esc when done";
     case "ligament":
@@ -45,6 +54,19 @@ export function toolHint(now: Tool): string {
 export const skinPointAt = (at: Point): SkinPoint =>
   create(SkinPointSchema, { place: { case: "positionMm", value: vectorOf(at) } });
 
+const hintOf = (name: string): string => {
+  const hint = landmarkHints[name.replace(/_(left|right)$/, "")];
+  return hint === undefined ? "" : `, ${hint}`;
+};
+
+/** The next landmark that is not set, after one; from the first on where there is none. */
+export function goOn(after?: string): void {
+  const known = region.value?.landmarksMm ?? {};
+  const from = after === undefined ? 0 : landmarkNames.indexOf(after) + 1;
+  const name = landmarkNames.slice(from).find((one) => known[one] === undefined);
+  tool.value = name === undefined ? { kind: "turn" } : { kind: "landmark", name, guided: true };
+}
+
 /** Carries out a click at a place on the skin. */
 export function click(at: Point): void {
   const now = tool.value;
@@ -54,6 +76,7 @@ export function click(at: Point): void {
       editPlan(({ model }) => {
         if (model?.geometry.case === "scanRegion") model.geometry.value.landmarksMm[now.name] = vectorOf(at);
       });
+      if (now.guided) return goOn(now.name);
       break;
     case "corner":
       editPlan(({ model }) => {

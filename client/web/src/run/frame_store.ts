@@ -23,6 +23,14 @@ export class FrameStore {
     while (this.bytes > this.mostBytes && this.held.length > 2) this.thin();
   }
 
+  /** A frame of an earlier moment than those that came; the newest stays what it is. */
+  insert(frame: Frame): void {
+    this.held = [...this.held.filter(({ sequence }) => sequence !== frame.sequence), frame];
+    this.held.sort((a, b) => a.timeS - b.timeS);
+    this.bytes = this.held.reduce((sum, one) => sum + sizeOf(one), 0);
+    this.newest ??= frame;
+  }
+
   /** Frames of another epoch show steps that the daemon takes again. */
   dropAfter(sequence: bigint): void {
     this.held = this.held.filter((frame) => frame.sequence <= sequence);

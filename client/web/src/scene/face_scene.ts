@@ -25,6 +25,8 @@ export class FaceScene {
   readonly viewport: Viewport;
   readonly markers: Markers;
   private before: { viewport: Viewport; surface: Surface | undefined } | undefined;
+  private other: { mesh: Mesh; frame: Frame } | undefined;
+  private readonly otherReader = new FrameReader();
   private face: MovingSurface | undefined;
   private faceMesh: Mesh | undefined;
   private patch: Surface | undefined;
@@ -35,6 +37,8 @@ export class FaceScene {
   private readonly running = new RunningMap();
   private numbers: FaceNumbers | undefined;
   private distance: Float32Array | undefined;
+  private isDark = false;
+  private shown: Quantity | "none" = "none";
   /** told when the colour map is another one */
   onMap: (map: ColourMap) => void = () => undefined;
 
@@ -51,6 +55,11 @@ export class FaceScene {
   }
   get points(): Coordinates | undefined {
     return this.face?.points;
+  }
+
+  /** The surface as it is and at rest [mm]. */
+  get shape(): { points: Coordinates; rest: Coordinates; triangles: Uint32Array } | undefined {
+    return this.face;
   }
 
   setFace(mesh: Mesh | undefined): void {
@@ -134,9 +143,13 @@ export class FaceScene {
       this.numbers = this.reader.read(frame, this.faceMesh.name, this.face.count);
       this.face.move(this.numbers.displacement);
       const values = quantity === "none" ? undefined : valuesOf(quantity, this.numbers, this.distance);
-      if (quantity !== "none" && this.running.fit(quantity, values === undefined ? 1 : largestOf(values)))
+      if (
+        quantity !== "none" &&
+        this.running.fit(quantity, Math.max(values === undefined ? 1 : largestOf(values), this.otherLargest(quantity)))
+      )
         this.onMap(this.running.map);
       colourFace(this.face, values === undefined ? "none" : quantity, this.numbers, this.distance, this.running.map);
+      this.colourOther(quantity);
     }
     this.viewport.request();
   }
@@ -157,6 +170,12 @@ export class FaceScene {
     if (!hit || !this.face) return undefined;
     const value = valueAt(this.distance!, this.face.triangles, hit);
     return Number.isNaN(value) ? undefined : value;
+  }
+
+  set dark(wanted: boolean) {
+    this.isDark = wanted;
+    this.viewport.dark = wanted;
+    if (this.before) this.before.viewport.dark = wanted;
   }
 
   /** Less than 1 where a machine is too slow: fewer pixels, and coarser what does not move. */
@@ -220,7 +239,9 @@ export class FaceScene {
     this.before = { viewport, surface: undefined };
     this.viewport.onCamera = (pose) => (viewport.pose = pose);
     viewport.onCamera = (pose) => (this.viewport.pose = pose);
+    viewport.onTurned = (pose) => this.viewport.onTurned(pose);
     viewport.pose = this.viewport.pose;
+    viewport.dark = this.isDark;
     this.fillBefore();
   }
 
@@ -230,9 +251,37 @@ export class FaceScene {
       before.viewport.remove(before.surface.actor);
       before.surface.dispose();
     }
-    before.surface = this.faceMesh && new Surface(this.faceMesh);
+    const mesh = this.other?.mesh ?? this.faceMesh;
+    before.surface = mesh && new Surface(mesh);
     if (before.surface) before.viewport.add(before.surface.actor);
+    this.colourOther(this.shown);
     before.viewport.request();
+  }
+
+  /** In the second picture: another result, or without one the face before. */
+  setOther(other: { mesh: Mesh; frame: Frame } | undefined): void {
+    this.other = other;
+    if (this.before) this.fillBefore();
+  }
+
+  private otherLargest(quantity: Quantity): number {
+    if (!this.before || !this.other || quantity === "distance") return 0;
+    const { mesh, frame } = this.other;
+    const numbers = this.otherReader.read(frame, mesh.name, mesh.points.length / 3);
+    return largestOf(valuesOf(quantity, numbers, undefined)!);
+  }
+
+  /** The same colour means the same in both pictures. */
+  private colourOther(quantity: Quantity | "none"): void {
+    this.shown = quantity;
+    const surface = this.before?.surface;
+    if (!this.other || !surface) return;
+    const { mesh, frame } = this.other;
+    const numbers = this.otherReader.read(frame, mesh.name, surface.count);
+    const of = quantity === "distance" ? "none" : quantity;
+    surface.move(numbers.displacement);
+    colourFace(surface, of, numbers, undefined, this.running.map);
+    this.before!.viewport.request();
   }
 
   dispose(): void {

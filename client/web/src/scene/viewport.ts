@@ -18,7 +18,16 @@ export interface CameraPose {
   up: Point;
 }
 
+const isSamePose = (one: CameraPose, other: CameraPose): boolean =>
+  (["position", "focus", "up"] as const).every((part) =>
+    one[part].every((value, c) => Math.abs(value - other[part][c]) < 1e-3),
+  );
+
 const background: Point = [0.905, 0.925, 0.93];
+const darkBackground: Point = [0.06, 0.085, 0.095];
+
+/** A face is so broad for its height. */
+const leastAspect = 0.8;
 
 let graphicsCard: boolean | undefined;
 
@@ -43,8 +52,14 @@ export class Viewport {
   private due = 0;
   /** told after every picture */
   onRendered: () => void = () => undefined;
-  /** told when the camera was moved by hand */
+  /** all others that are told after every picture */
+  readonly onDrawn = new Set<() => void>();
+  /** told when the camera was moved, by hand or by the page */
   onCamera: (pose: CameraPose) => void = () => undefined;
+  /** told when it was moved by hand */
+  onTurned: (pose: CameraPose) => void = () => undefined;
+  /** where the page has put the camera */
+  private put: CameraPose | undefined;
   private following = false;
   private sharpness = 1;
 
@@ -90,8 +105,17 @@ export class Viewport {
     this.fit();
   }
 
+  /** For a dim room. */
+  set dark(wanted: boolean) {
+    this.renderer.setBackground(...(wanted ? darkBackground : background));
+    this.request();
+  }
+
   private cameraMoved(): void {
-    if (!this.following) this.onCamera(this.pose);
+    const { pose } = this;
+    if (!this.following) this.onCamera(pose);
+    // A picture fits the depths that the camera sees, which is no turn.
+    if (!this.following && this.put && !isSamePose(pose, this.put)) this.onTurned(pose);
     this.request();
   }
 
@@ -113,6 +137,7 @@ export class Viewport {
     this.renderer.resetCameraClippingRange();
     this.renderWindow.render();
     this.onRendered();
+    this.onDrawn.forEach((tell) => tell());
   }
 
   get pose(): CameraPose {
@@ -127,7 +152,7 @@ export class Viewport {
   /** As another viewport is turned. */
   set pose(pose: CameraPose) {
     const camera = this.renderer.getActiveCamera();
-    this.following = true;
+    [this.following, this.put] = [true, pose];
     camera.setPosition(...pose.position);
     camera.setFocalPoint(...pose.focus);
     camera.setViewUp(...pose.up);
@@ -137,9 +162,18 @@ export class Viewport {
 
   /** Looks at a place from a direction, so that `halfHeight` [mm] fits above and below it. */
   lookAt(focus: Point, direction: Point, up: Point, halfHeight: number): void {
-    const distance = halfHeight / Math.tan(((24 / 2) * Math.PI) / 180);
+    const { width, height } = this.container.getBoundingClientRect();
+    // In a narrow picture the sides of the face would be cut off.
+    const further = width > 0 ? Math.max(1, (leastAspect * height) / width) : 1;
+    const distance = (further * halfHeight) / Math.tan(((24 / 2) * Math.PI) / 180);
     this.pose = { focus, up, position: [0, 1, 2].map((c) => focus[c] + distance * direction[c]) as Point };
     this.onCamera(this.pose);
+  }
+
+  /** Puts the camera, and those that are turned as it is. */
+  set placed(pose: CameraPose) {
+    this.pose = pose;
+    this.onCamera(pose);
   }
 
   /** Turns the camera around what it looks at [degrees]. */

@@ -2,6 +2,7 @@
 import type { Mesh } from "../api/meshes";
 import { computeNormals, type Point } from "./surface_geometry";
 import { trianglesOf } from "../api/meshes";
+import type { CameraPose } from "./viewport";
 
 export interface Axes {
   left: Point;
@@ -31,14 +32,28 @@ function boxOf(points: ArrayLike<number>): { centre: Point; half: Point } {
   return { centre: low.map((v, c) => (v + high[c]) / 2) as Point, half: low.map((v, c) => (high[c] - v) / 2) as Point };
 }
 
-/** The whole face from the front, or from a side of it. */
-export function faceView(face: Mesh, axes: Axes, turn: "front" | "left" | "right"): View {
+/** The views of clinical photographs: how far the camera goes to the patient's left [degrees]. */
+export const standardTurns = { right: -90, right_oblique: -45, front: 0, left_oblique: 45, left: 90 };
+export type StandardView = keyof typeof standardTurns;
+
+/** The whole face in a standard view; all of them are from equally far away. */
+export function faceView(face: Mesh, axes: Axes, which: StandardView): View {
   const { centre, half } = boxOf(face.points);
-  const sign = turn === "left" ? 1 : turn === "right" ? -1 : 0;
-  const direction =
-    turn === "front" ? axes.forward : unit(axes.forward.map((v, c) => 0.75 * v + 0.66 * sign * axes.left[c]) as Point);
-  return { focus: centre, direction, up: axes.up, halfHeight: 1.12 * Math.max(...half) };
+  const turn = (standardTurns[which] * Math.PI) / 180;
+  const direction = axes.forward.map((v, c) => Math.cos(turn) * v + Math.sin(turn) * axes.left[c]) as Point;
+  return { focus: centre, direction: unit(direction), up: axes.up, halfHeight: 1.12 * Math.max(...half) };
 }
+
+/** The same view of the other side: the camera mirrored at the plane between both. */
+export function contralateral(pose: CameraPose, middle: Point, left: Point): CameraPose {
+  const dot = (v: Point): number => v[0] * left[0] + v[1] * left[1] + v[2] * left[2];
+  const turned = (v: Point): Point => v.map((x, c) => x - 2 * dot(v) * left[c]) as Point;
+  const place = (p: Point): Point =>
+    turned(p.map((x, c) => x - middle[c]) as Point).map((x, c) => x + middle[c]) as Point;
+  return { position: place(pose.position), focus: place(pose.focus), up: turned(pose.up) };
+}
+
+export const middleOf = (face: Mesh): Point => boxOf(face.points).centre;
 
 /** The region of the model, from in front of it, with what a face is recognised by around it. */
 export function regionView(skin: Mesh, axes: Axes, flat: boolean): View {

@@ -4,10 +4,30 @@ import { countPictures } from "./picture_rate";
 import { useEffect, useRef } from "preact/hooks";
 import { brushMm, tool, toolHint } from "../plan/tools";
 import { FaceScene } from "../scene/face_scene";
+import { beside, bindBeside, titleOf } from "../run/beside";
+import { simulation } from "../run/state";
+import { bindCamera } from "./camera";
+import { Labels } from "./labels";
+import { RulerPanel } from "./ruler_panel";
+import { bindRulers } from "./rulers";
+import { SectionPanel } from "./section_panel";
+import { bindSection } from "./section_state";
+import { bindGuesses } from "../landmarks/state";
 import { bindFace, bindFrame, bindMarkers, bindPatch } from "./stage_bindings";
 import { useCursor } from "./stage_cursor";
 import { onStageFocus, onStageKey } from "./stage_keys";
-import { compare, goalProbe, keyCursor, map, probe, quantity, shownScene, split } from "./stage_state";
+import {
+  compare,
+  dark,
+  goalProbe,
+  keyCursor,
+  map,
+  presenting,
+  probe,
+  quantity,
+  shownScene,
+  split,
+} from "./stage_state";
 import { ScalarBar } from "./scalar_bar";
 import { ShapeReadout } from "./shape_readout";
 import { shownDistances, showsFrame } from "./shown";
@@ -54,7 +74,19 @@ function GoalProbe() {
 function Slider() {
   return (
     <>
-      <div class="divider" style={{ left: `${100 * split.value}%` }} />
+      <div
+        class="divider"
+        style={{ left: `${100 * split.value}%` }}
+        onPointerDown={(event) => {
+          event.preventDefault();
+          event.currentTarget.setPointerCapture(event.pointerId);
+        }}
+        onPointerMove={(event) => {
+          if (!event.currentTarget.hasPointerCapture(event.pointerId)) return;
+          const { left, width } = event.currentTarget.parentElement!.getBoundingClientRect();
+          split.value = Math.min(1, Math.max(0, (event.clientX - left) / width));
+        }}
+      />
       <input
         class="split"
         type="range"
@@ -84,6 +116,16 @@ export function Stage() {
       bindMarkers(scene),
       bindFrame(scene),
       effect(() => scene.compare(compare.value === "after" ? undefined : before.current!)),
+      effect(() => {
+        const other = beside.value?.meshes.get(beside.value.mesh);
+        scene.setOther(other && { mesh: other, frame: beside.value!.frame });
+      }),
+      bindCamera(),
+      effect(() => void (scene.dark = presenting.value && dark.value)),
+      bindRulers(),
+      bindSection(),
+      bindBeside(),
+      bindGuesses(),
     ];
     return () => {
       ends.forEach((end) => end());
@@ -100,8 +142,9 @@ export function Stage() {
       <div
         class="view before"
         ref={before}
+        role="application"
         hidden={!comparing}
-        aria-label="The face before, in three dimensions"
+        aria-label={beside.value ? "Another result, in three dimensions" : "The face before, in three dimensions"}
         style={mode === "slider" ? { clipPath: `inset(0 ${100 * (1 - split.value)}% 0 0)` } : {}}
       />
       <div
@@ -116,8 +159,8 @@ export function Stage() {
       />
       {comparing && (
         <>
-          <span class="tag tag-before">Before</span>
-          <span class="tag tag-after">After</span>
+          <span class="tag tag-before">{beside.value?.title ?? "Before"}</span>
+          <span class="tag tag-after">{beside.value && simulation.value ? titleOf(simulation.value) : "After"}</span>
         </>
       )}
       {mode === "slider" && <Slider />}
@@ -137,7 +180,12 @@ export function Stage() {
       <KeyCursor />
       <Probe />
       <GoalProbe />
+      <Labels />
       <ShapeReadout />
+      <div class="stage-panels">
+        <RulerPanel />
+        <SectionPanel />
+      </div>
       <ViewTools />
     </div>
   );

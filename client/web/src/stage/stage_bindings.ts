@@ -5,6 +5,7 @@ import { locate, pointOf } from "../plan/landmarks";
 import { chart, model, modelMeshes, plan, region, scan, scanMesh, zones } from "../plan/state";
 import { liveSite, tool } from "../plan/tools";
 import { distance, frame, meshes, planOfRun, runIsOpen, simulation } from "../run/state";
+import { beside } from "../run/beside";
 import { isFinal, shownShapeOf } from "../shape/state";
 import { entryColours, zoneColours, type Rgb } from "../scene/colour_maps";
 import type { Delivery } from "@wire/planning_service_pb";
@@ -13,8 +14,11 @@ import type { Ball, Line } from "../scene/markers";
 import type { Point } from "../scene/surface_geometry";
 import { layerShown, showLayers } from "../panels/tissue_panel";
 import { delivery, deliveryIsOld } from "../target/state";
+import { moved, openGuesses } from "../landmarks/state";
 import { shownDistances, shownFrame, shownMesh, showsPlanShape } from "./shown";
-import { quantity, step } from "./stage_state";
+import { rulerMarks } from "./rulers";
+import { section } from "./section_state";
+import { compare, quantity, step } from "./stage_state";
 import { lookAtFace, lookAtLift, lookAtMissing, lookAtRegion } from "./view_tools";
 
 type End = () => void;
@@ -141,7 +145,10 @@ export function bindMarkers(scene: FaceScene): End {
       void (at && balls.push({ at, colour: colour[kind], radius }));
     if (step.value === "face") {
       const active = tool.value.kind === "landmark" ? tool.value.name : "";
-      for (const [name, at] of Object.entries(points)) add(pointOf(at), name === active ? "active" : "landmark");
+      const at = (name: string, place: Point): Point => (moved.value?.name === name ? moved.value.at : place);
+      for (const [name, place] of Object.entries(points))
+        add(at(name, pointOf(place)), name === active ? "active" : "landmark");
+      for (const [name, { at: place }] of Object.entries(openGuesses.value)) add(at(name, place), "active");
     }
     if (step.value === "face" || step.value === "tissue") {
       const corners = (region.value?.corners ?? []).map(place).filter((at) => at !== undefined);
@@ -173,6 +180,9 @@ export function bindMarkers(scene: FaceScene): End {
         if (delivery.value && !deliveryIsOld.value) addDelivery(scene, delivery.value.list, balls, lines);
       }
     }
+    balls.push(...rulerMarks.value.balls);
+    lines.push(...rulerMarks.value.lines);
+    if (section.value) lines.push({ points: section.value.skin, colour: colour.corner });
     scene.markers.show(balls, lines);
   });
 }
@@ -211,7 +221,7 @@ export function bindFrame(scene: FaceScene): End {
     untracked(lookAtMissing);
   });
   const end = effect(() => {
-    void [shownFrame.value, quantity.value, shownMesh.value, shownDistances.value];
+    void [beside.value, compare.value, shownFrame.value, quantity.value, shownMesh.value, shownDistances.value];
     if (shownDistances.value === undefined) scene.forgetDistance();
     if (distance.value) scene.setDistance(distance.value.vertices, distance.value.distanceMm);
     if (due === 0) due = requestAnimationFrame(show);

@@ -2,12 +2,19 @@
 // toolkit's.
 import type { RefObject } from "preact";
 import { useEffect } from "preact/hooks";
+import { drop, moved, openGuesses } from "../landmarks/state";
+import { pointOf } from "../plan/landmarks";
+import { region } from "../plan/state";
 import { click, dab, tool } from "../plan/tools";
+import { distanceOf, type Point } from "../scene/surface_geometry";
+import { addPlace } from "./rulers";
 import { shownDistances, shownFrame } from "./shown";
-import { goalProbe, probe, shownScene } from "./stage_state";
+import { goalProbe, probe, shownScene, step } from "./stage_state";
 
 /** A press that moved further was a turn of the face. */
 const clickPixels = 4;
+/** So near a landmark is taken by the hand. */
+const [grabPixels, grabMm] = [14, 8];
 
 export function useCursor(main: RefObject<HTMLDivElement>): void {
   useEffect(() => {
@@ -16,6 +23,8 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
     let [downX, downY, due] = [0, 0, 0];
     /** of the brush that is down */
     let stroke: object | undefined;
+    /** the landmark that is dragged */
+    let grabbed: string | undefined;
 
     const leave = (): void => {
       cancelAnimationFrame(due);
@@ -25,9 +34,31 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
       const hit = shownScene.value?.hitPatch(event.clientX, event.clientY);
       if (hit) dab(hit.point, stroke);
     };
+    /** The landmark or guess under the pointer, on the side of the face that is seen. */
+    const landmarkAt = ({ clientX, clientY }: PointerEvent): string | undefined => {
+      const scene = shownScene.value;
+      const hit = scene?.hit(clientX, clientY);
+      if (!scene || !hit || step.value !== "face" || tool.value.kind !== "turn") return undefined;
+      const set = Object.entries(region.value?.landmarksMm ?? {}).map(([name, at]) => ({ name, at: pointOf(at) }));
+      const open = Object.entries(openGuesses.value).map(([name, { at }]) => ({ name, at }));
+      const box = element.getBoundingClientRect();
+      const apart = (at: Point): number => {
+        const { x, y } = scene.viewport.project(at);
+        return Math.hypot(x - (clientX - box.left), y - (clientY - box.top));
+      };
+      return [...set, ...open]
+        .filter(({ at }) => apart(at) < grabPixels && distanceOf(at, hit.point) < grabMm)
+        .sort((a, b) => apart(a.at) - apart(b.at))[0]?.name;
+    };
     const down = (event: PointerEvent): void => {
       [downX, downY] = [event.clientX, event.clientY];
       probe.value = undefined;
+      grabbed = event.button === 0 && element.contains(event.target as Node) ? landmarkAt(event) : undefined;
+      if (grabbed !== undefined) {
+        event.stopPropagation();
+        outer.setPointerCapture(event.pointerId);
+        return;
+      }
       if (tool.value.kind !== "paint" || event.button !== 0 || !element.contains(event.target as Node)) return;
       if (!shownScene.value?.hitPatch(event.clientX, event.clientY)) return;
       event.stopPropagation();
@@ -36,12 +67,24 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
       paint(event);
     };
     const move = (event: PointerEvent): void => {
+      if (grabbed !== undefined) {
+        event.stopPropagation();
+        const hit = shownScene.value?.hit(event.clientX, event.clientY);
+        const isDrag = Math.hypot(event.clientX - downX, event.clientY - downY) > clickPixels;
+        if (hit && (isDrag || moved.value)) moved.value = { name: grabbed, at: hit.point };
+        return;
+      }
       if (stroke) {
         event.stopPropagation();
         paint(event);
         return;
       }
-      if (event.buttons !== 0 || (shownFrame.value === undefined && shownDistances.value === undefined)) return;
+      if (
+        event.buttons !== 0 ||
+        tool.value.kind === "measure" ||
+        (shownFrame.value === undefined && shownDistances.value === undefined)
+      )
+        return;
       if (!(event.target as HTMLElement).closest(".view")) return leave();
       const { clientX, clientY } = event;
       cancelAnimationFrame(due);
@@ -56,6 +99,11 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
       });
     };
     const up = (event: PointerEvent): void => {
+      if (grabbed !== undefined) {
+        grabbed = undefined;
+        event.stopPropagation();
+        return drop();
+      }
       if (stroke) {
         stroke = undefined;
         event.stopPropagation();
@@ -64,7 +112,8 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
       if (!element.contains(event.target as Node) || event.button !== 0) return;
       if (Math.hypot(event.clientX - downX, event.clientY - downY) > clickPixels) return;
       const hit = shownScene.value?.hit(event.clientX, event.clientY);
-      if (hit) click(hit.point);
+      if (hit && tool.value.kind === "measure") addPlace(hit);
+      else if (hit) click(hit.point);
     };
     // Before the toolkit hears of it: a stroke of the brush must not turn the face.
     outer.addEventListener("pointerdown", down, true);

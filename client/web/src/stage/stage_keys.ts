@@ -1,6 +1,7 @@
 // The picture by keyboard: arrows turn the face, or lead the tool at hand, which Enter uses.
 import type { JSX } from "preact";
 import { click, dab, tool } from "../plan/tools";
+import { addPlace } from "./rulers";
 import { keyCursor, shownScene } from "./stage_state";
 
 const turnDegrees = 6;
@@ -29,7 +30,8 @@ function apply(view: HTMLElement): void {
     return;
   }
   const hit = shownScene.value?.hit(x, y);
-  if (hit) click(hit.point);
+  if (hit && tool.value.kind === "measure") addPlace(hit);
+  else if (hit) click(hit.point);
 }
 
 function lead(view: HTMLElement, [dx, dy]: [number, number], by: number): void {

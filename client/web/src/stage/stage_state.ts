@@ -10,6 +10,13 @@ export const stepNames: Step[] = ["face", "goal", "tissue", "fat", "run"];
 export const step = signal<Step>("face");
 export const quantity = signal<Quantity | "none">("displacement");
 export const compare = signal<Compare>("after");
+/** for the patient to look at: the face, and no forms */
+export const presenting = signal(false);
+/** dark around the face, for a dim room */
+export const dark = signal(false);
+export const showRulers = signal(false);
+/** names of landmarks on the face */
+export const showLabels = signal(true);
 /** share of the picture that shows the face before */
 export const split = signal(0.5);
 export const map = signal<ColourMap | undefined>(undefined);

@@ -53,6 +53,26 @@ describe("the gateway", () => {
     expect((await fetchText("/samples/../../CHANGELOG.md")).status).toBe(404);
     expect((await fetchText("/nothing")).status).toBe(404);
   });
+  it("sends scripts and styles compressed, to be kept: the first load is below 250 kB", async () => {
+    const page = await fetchText("/");
+    const files = [...page.text.matchAll(/(?:src|href)="\.\/(assets\/[^"]+)"/g)].map(([, path]) => `/${path}`);
+    expect(files).toHaveLength(2);
+    let total = page.text.length;
+    for (const file of files) {
+      const { headers } = await fetchText(file, { "accept-encoding": "gzip, br" });
+      expect(headers["content-encoding"], file).toBe("br");
+      expect(headers["cache-control"], file).toBe("public, max-age=31536000, immutable");
+      expect(headers.vary, file).toBe("accept-encoding");
+      total += Number(headers["content-length"]);
+    }
+    expect(total).toBeLessThan(250_000);
+    const [script] = files;
+    expect((await fetchText(script, { "accept-encoding": "gzip" })).headers["content-encoding"]).toBe("gzip");
+    const plain = await fetchText(script, { "accept-encoding": "br;q=0" });
+    expect(plain.headers["content-encoding"]).toBeUndefined();
+    expect(Number(plain.headers["content-length"])).toBeGreaterThan(400_000);
+    expect(plain.text.length).toBeGreaterThan(400_000);
+  });
   it("answers to names of this machine only", async () => {
     expect((await fetchText("/", { host: "clinic.example:80" })).status).toBe(421);
   });

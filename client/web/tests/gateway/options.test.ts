@@ -3,7 +3,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 import { help, parseOptions } from "../../gateway/options";
-import { locate } from "../../gateway/pages";
+import { locate, takesEncoding } from "../../gateway/pages";
 
 const page = mkdtempSync(join(tmpdir(), "page-"));
 writeFileSync(join(page, "index.html"), "");
@@ -49,5 +49,15 @@ describe("a file of the page", () => {
     expect(locate("/srv/page", "/assets/a.js")).toBe("/srv/page/assets/a.js");
     for (const path of ["/../secret", "/%2e%2e/secret", "/..%2fsecret", "/a/../../secret", "/%00", "/%zz"])
       expect(locate("/srv/page", path)).toBeUndefined();
+  });
+});
+
+describe("what a client takes", () => {
+  it("is what its header says", () => {
+    expect(takesEncoding("gzip, deflate, br", "br")).toBe(true);
+    expect(takesEncoding("*", "br")).toBe(true);
+    expect(takesEncoding("br;q=0.5", "br")).toBe(true);
+    for (const header of [undefined, "", "gzip", "br;q=0, *", "br; q=0.0"])
+      expect(takesEncoding(header, "br")).toBe(false);
   });
 });

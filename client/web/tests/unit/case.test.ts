@@ -8,6 +8,7 @@ import { parseAddress, writeAddress } from "../../src/case/address";
 import { vectorOf } from "../../src/plan/landmarks";
 import { newInjection, newPlan, newZone } from "../../src/plan/new_plan";
 import { checkOnFace, hasPlaces, liesOn, medianOff, removePlaces } from "../../src/plan/places";
+import type { CameraPose } from "../../src/scene/viewport";
 import type { Point } from "../../src/scene/surface_geometry";
 
 describe("an address", () => {
@@ -26,6 +27,18 @@ describe("an address", () => {
     expect(parseAddress("")).toEqual(empty);
     expect(parseAddress(writeAddress(empty))).toEqual(empty);
     expect(parseAddress("#dashboard").page).toBe("dashboard");
+  });
+  it("has the camera and the moment that are looked at", () => {
+    const whole = {
+      ...parseAddress("#plan/run?patient=p1&run=w3"),
+      camera: { position: [1.5, -2, 300], focus: [0, 10, 80.1], up: [0, 1, 0.25] } as CameraPose,
+      momentS: 2.5,
+    };
+    const text = writeAddress(whole);
+    expect(text).toBe("#plan/run?patient=p1&run=w3&camera=1.5,-2.0,300.0,0.0,10.0,80.1,0.000,1.000,0.250&at=2.50");
+    expect(parseAddress(text)).toEqual(whole);
+    for (const bad of ["camera=1,2,3", "camera=1,2,3,4,5,6,7,8,x", "camera=0,0,0,0,0,0,0,1,0", "at=-1", "at=x"])
+      expect(parseAddress(`#plan/run?run=w3&${bad}`)).toEqual(parseAddress("#plan/run?run=w3"));
   });
   it("leaves out what is no name", () => {
     expect(parseAddress("#plan/nowhere?patient=../a&scan=b&run=%2F")).toEqual(parseAddress("#plan/face"));

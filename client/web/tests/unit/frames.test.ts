@@ -91,13 +91,14 @@ describe("meshes", () => {
         [cells.name, cells],
       ]),
     ).get("skin")!;
-    const face = new MovingSurface(mesh, { add: () => undefined, remove: () => undefined });
+    const scene = { add: () => undefined, remove: () => undefined };
+    const face = new MovingSurface(mesh, scene);
     const lifted = Float32Array.from([0, 0, 0, 0, 0, 1 / 32, 0, 0, 1 / 32, 0, 0, 0]);
     face.move(lifted);
     expect(Array.from(face.points, (value, k) => value - far[k % 3])).toEqual(
       near.map((value, k) => value + lifted[k]),
     );
-    const { normals } = new MovingSurface({ ...mesh, points: Float32Array.from(near) }, face["scene"]);
+    const { normals } = new MovingSurface({ ...mesh, points: Float32Array.from(near) }, scene);
     face.move();
     face.normals.forEach((value, k) => expect(value).toBeCloseTo(normals[k], 5));
     const hit = castRay(mesh.points, trianglesOf(mesh), [far[0] + 0.2, far[1] + 0.1, far[2] + 9], [0, 0, -1])!;
@@ -144,6 +145,17 @@ describe("the frames of a run", () => {
     expect(store.at(0.055)!.sequence).toBe(5n);
     expect(store.at(-1)!.sequence).toBe(0n);
     expect(store.at(99)!.sequence).toBe(10n);
+  });
+  it("take one of an earlier moment, and the newest stays", () => {
+    const store = new FrameStore();
+    store.insert(frame(4));
+    expect(store.latest!.sequence).toBe(4n);
+    store.add(frame(9));
+    store.insert(frame(2));
+    store.insert(frame(4));
+    expect(store.frames.map(({ sequence }) => Number(sequence))).toEqual([2, 4, 9]);
+    expect(store.latest!.sequence).toBe(9n);
+    expect(store.at(0.05)!.sequence).toBe(4n);
   });
   it("after a return to an earlier state are dropped", () => {
     const store = new FrameStore();

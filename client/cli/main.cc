@@ -12,6 +12,7 @@
 #include "client/cli/forecast_command.h"
 #include "client/cli/records_command.h"
 #include "client/cli/scene_command.h"
+#include "client/cli/thickness_command.h"
 #include "client/cpp/errors.h"
 #include "client/cpp/nearest_name.h"
 #include "client/cpp/result_text.h"
@@ -41,6 +42,7 @@ void add_all_commands(CLI::App& root, Application& application) {
   add_export_command(root, application);
   add_evaluate_command(root, application);
   add_propose_command(root, application);
+  add_thickness_command(root, application);
   add_deliver_command(root, application);
   add_forecast_commands(root, application);
   add_report_command(root, application);

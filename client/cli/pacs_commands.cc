@@ -1,3 +1,4 @@
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -6,6 +7,7 @@
 #include "absl/strings/str_format.h"
 #include "client/cli/records_command.h"
 #include "client/cpp/records/pacs.h"
+#include "client/cpp/records/stow.h"
 
 namespace lipofill::client {
 namespace {
@@ -18,7 +20,30 @@ struct Options {
   std::string series_uid;
   std::string out;
   std::vector<std::string> files;
+  WebArchive web;
 };
+
+std::string from_environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+/// Over the web where the address is a URL, else by DIMSE; returns what to call the archive.
+absl::StatusOr<std::string> send_files(const Options& options) {
+  const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
+  if (is_web_address(options.pacs)) {
+    WebArchive web = options.web;
+    web.url = options.pacs;
+    web.password = from_environment("LIPOFILL_PACS_PASSWORD");
+    web.token = from_environment("LIPOFILL_PACS_TOKEN");
+    if (auto status = send_to_web_archive(web, files); !status.ok()) return status;
+    return web.url;
+  }
+  const auto pacs = parse_pacs_address(options.pacs, options.own_title);
+  if (!pacs.ok()) return pacs.status();
+  if (auto status = send_to_pacs(*pacs, files); !status.ok()) return status;
+  return pacs->title;
+}
 
 absl::StatusOr<ExitCode> find(const Application& application, const Options& options) {
   const auto pacs = parse_pacs_address(options.pacs, options.own_title);
@@ -61,15 +86,13 @@ absl::StatusOr<ExitCode> fetch(const Application& application, const Options& op
 }
 
 absl::StatusOr<ExitCode> send(const Application& application, const Options& options) {
-  const auto pacs = parse_pacs_address(options.pacs, options.own_title);
-  if (!pacs.ok()) return pacs.status();
-  const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
-  if (auto status = send_to_pacs(*pacs, files); !status.ok()) return status;
+  const auto taker = send_files(options);
+  if (!taker.ok()) return taker.status();
   if (application.json) {
-    std::cout << nlohmann::ordered_json{{"sent", files.size()}}.dump(2) << "\n";
+    std::cout << nlohmann::ordered_json{{"sent", options.files.size()}}.dump(2) << "\n";
     return ExitCode::kOk;
   }
-  return application.done(absl::StrCat(pacs->title, " has taken ", files.size(), " files"));
+  return application.done(absl::StrCat(*taker, " has taken ", options.files.size(), " files"));
 }
 
 CLI::App* add_pacs_command(CLI::App& group, Application& application, const std::shared_ptr<Options>& options,
@@ -113,9 +136,19 @@ void add_pacs_commands(CLI::App& group, Application& application) {
   command->add_option("--series", options->series_uid, "UID of the series; default: all of the study");
   command->add_option("--out", options->out, "folder, empty or new")->required();
 
-  command = add_pacs_command(group, application, options, "send",
-                             "Sends files of DICOM to a PACS (C-STORE). What it has already it keeps",
-                             "  lipofill records send --pacs ORTHANC@localhost:4242 records/*.dcm\n", send);
+  command =
+      add_pacs_command(group, application, options, "send",
+                       "Sends files of DICOM to a PACS: by C-STORE, or by STOW-RS where --pacs is the address of a "
+                       "DICOMweb service, over TLS where it begins with https://. A password is taken from "
+                       "LIPOFILL_PACS_PASSWORD, a token from LIPOFILL_PACS_TOKEN. What the PACS has already it "
+                       "keeps",
+                       "  lipofill records send --pacs ORTHANC@localhost:4242 records/*.dcm\n"
+                       "  lipofill records send --pacs https://pacs.example/dicom-web records/*.dcm\n",
+                       send);
+  command->add_option("--ca", options->web.ca_file, "certificates that vouch for a web service; default: the system's")
+      ->type_name("FILE.pem")
+      ->check(CLI::ExistingFile.description(""));
+  command->add_option("--user", options->web.user, "name to log in to a web service by");
   command->add_option("files", options->files, "files of lipofill records make, or any of DICOM")->required();
 }
 

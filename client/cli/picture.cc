@@ -54,6 +54,8 @@ absl::Status draw_picture(const std::filesystem::path& folder, Picture picture, 
   if (picture == Picture::kScan) command.push_back("--scan");
   if (picture == Picture::kDeficit) command.push_back("--deficit");
   if (picture == Picture::kReport) command.push_back("--report");
+  if (picture == Picture::kFilm) command.push_back("--film");
+  if (picture == Picture::kThickness) command.push_back("--thickness");
   absl::Status status = absl::FailedPreconditionError(kNoScreen);
   if (has_display()) status = run_drawing(command);
   if (!absl::IsFailedPrecondition(status)) return status;

@@ -11,6 +11,8 @@
 #include "client/cli/result_figures.h"
 #include "client/cli/result_files.h"
 #include "client/cli/run_record.h"
+#include "client/cli/scene_film.h"
+#include "client/cli/thickness_sheet.h"
 #include "client/cpp/io/result_folder.h"
 #include "client/cpp/json_file.h"
 #include "client/cpp/picture/deficit_picture.h"
@@ -40,6 +42,8 @@ struct Options {
   bool scan = false;
   bool deficit = false;
   bool report = false;
+  bool thickness = false;
+  bool film = false;
   bool in_this_process = false;
 };
 
@@ -62,10 +66,19 @@ absl::Status draw_deficit_here(const Options& options) {
   return draw_deficit_picture(*request);
 }
 
+absl::Status draw_thickness_here(const Options& options) {
+  auto picture = read_thickness_picture(options.result);
+  if (!picture.ok()) return picture.status();
+  picture->png = options.out;
+  return draw_thickness_picture(*picture);
+}
+
 absl::Status draw_here(const Options& options) {
   if (options.scan) return draw_scan_here(options);
   if (options.deficit) return draw_deficit_here(options);
   if (options.report) return draw_pictures_of_report(options.result);
+  if (options.film) return draw_film_frames(options.result);
+  if (options.thickness) return draw_thickness_here(options);
   const auto record = read_run_record(options.result);
   if (!record.ok()) return record.status();
   PictureRequest request;
@@ -136,6 +149,8 @@ void add_render_command(CLI::App& root, Application& application) {
   command->add_flag("--scan", options->scan)->group("");
   command->add_flag("--deficit", options->deficit)->group("");
   command->add_flag("--report", options->report)->group("");
+  command->add_flag("--thickness", options->thickness)->group("");
+  command->add_flag("--film", options->film)->group("");
   command->add_flag("--in-this-process", options->in_this_process)->group("");
 }
 

@@ -9,6 +9,7 @@
 #include "absl/strings/str_format.h"
 #include "client/cli/options.h"
 #include "client/cli/run_record.h"
+#include "client/cli/scene_film.h"
 #include "client/cli/units.h"
 #include "client/cpp/json_file.h"
 #include "client/cpp/scene/glb_scene.h"
@@ -28,7 +29,8 @@ constexpr char kDescription[] =
     "strain and "
     "stress at the middle of each hexahedron; --deck names the tissue's deck, of lipofill export --deck, which knows "
     "the "
-    "layers.";
+    "layers. FILE.mp4 or FILE.webm is a film of the rise, for slides; it takes the program ffmpeg, and needs no "
+    "screen.";
 
 struct Options {
   std::string result;
@@ -75,11 +77,24 @@ absl::StatusOr<ExitCode> write_tissue(const Application& application, const Opti
   return application.done(absl::StrCat("wrote the tissue of ", options.result, " to ", options.out));
 }
 
+absl::StatusOr<ExitCode> film(const Application& application, const Options& options) {
+  if (options.colour != "lift") return absl::InvalidArgumentError("a film shows the lift: --colour is for a .glb");
+  if (auto status = write_film(options.result, options.out, {options.stills, options.play_s}); !status.ok())
+    return status;
+  if (application.json) {
+    std::cout << nlohmann::ordered_json{{"file", options.out}}.dump(2) << "\n";
+    return ExitCode::kOk;
+  }
+  return application.done(absl::StrCat("filmed ", options.result, " as ", options.out));
+}
+
 absl::StatusOr<ExitCode> write(const Application& application, const Options& options) {
   if (absl::EndsWithIgnoreCase(options.out, ".vtu")) return write_tissue(application, options);
+  if (is_film(options.out)) return film(application, options);
   const bool is_glb = absl::EndsWithIgnoreCase(options.out, ".glb");
   if (!is_glb && !absl::EndsWithIgnoreCase(options.out, ".mrml"))
-    return absl::InvalidArgumentError(absl::StrCat("--out ", options.out, " must end in .glb, .mrml or .vtu"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("--out ", options.out, " must end in .glb, .mrml, .vtu, .mp4 or .webm"));
   const auto record = read_run_record(options.result);
   if (!record.ok()) return record.status();
   const auto motion = read_skin_motion(options.result, options.stills);
@@ -107,11 +122,14 @@ void add_scene_command(CLI::App& root, Application& application) {
                                         "  lipofill scene result --out face.glb\n"
                                         "  lipofill scene result --out face.glb --colour pressure --play-s 6\n"
                                         "  lipofill scene result --out face.glb --scan face.ply\n"
+                                        "  lipofill scene result --out rise.mp4 --play-s 6\n"
                                         "  lipofill scene result --out face.mrml --landmarks face.mrk.json\n"
                                         "  lipofill scene result --out tissue.vtu --deck tissue.inp\n",
                                         [&application, options] { return write(application, *options); });
   command->add_option("result", options->result, "folder of a run or an export")->required();
-  command->add_option("--out", options->out, "file to write")->required()->type_name("FILE.glb|FILE.mrml|FILE.vtu");
+  command->add_option("--out", options->out, "file to write")
+      ->required()
+      ->type_name("FILE.glb|FILE.mrml|FILE.vtu|FILE.mp4|FILE.webm");
   command->add_option("--colour", options->colour, "what colours a GLB: lift (default) or pressure")
       ->check(CLI::IsMember({"lift", "pressure"}).description(""));
   command->add_option("--scan", options->scan,
@@ -122,7 +140,9 @@ void add_scene_command(CLI::App& root, Application& application) {
   command->add_option("--stills", options->stills, "at most so many stills of the motion; default 30")
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("NUMBER");
-  command->add_option("--play-s", options->play_s, "play the motion in so many seconds; default: as long as it took")
+  command
+      ->add_option("--play-s", options->play_s,
+                   "play the motion in so many seconds; default: as long as it took, a film 4")
       ->check(CLI::Range(0.01, 3600.0).description(""))
       ->type_name("SECONDS");
   command->add_option("--landmarks", options->landmarks, "landmarks to put into a scene of Slicer, mm and LPS");

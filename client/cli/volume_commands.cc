@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cli/application.h"
+#include "client/cpp/dicom/any_volume.h"
 #include "client/cpp/dicom/dicom_choice.h"
 #include "client/cpp/dicom/dicom_volume.h"
 #include "client/cpp/volume/skin_extraction.h"
@@ -23,7 +24,8 @@ constexpr char kExtractDescription[] =
     "The skin in a CT or MRI volume: the surface at a value, as triangles in millimetres.\n"
     "Reads MetaImage (.mha, .mhd), NRRD (.nrrd, .nhdr) and NIfTI-1 and -2 (.nii, .nii.gz, .hdr with .img) with their "
     "orientation and units; and DICOM series of CT, CBCT and MR: a folder, a zip or a file of several frames, of which "
-    "the largest axial CT is taken unless --series names another (lipofill scan series lists them). The surface is in "
+    "the largest axial CT is taken unless --series names another (lipofill scan series lists them); and segmentations: "
+    "DICOM-SEG, and label maps in the other formats, with the names that 3D Slicer gives to labels. The surface is in "
     "the "
     "patient's LPS axes: x to the left, y to the back, z up (NIfTI's and NRRD's RAS are turned to LPS); a NRRD without "
     "a space or a NIfTI "
@@ -100,17 +102,10 @@ absl::StatusOr<ExitCode> list_dicom_series(const Application& application, const
 
 /// Extracts from a volume file or, where that is what it is, from DICOM.
 absl::StatusOr<ExtractedSkin> extract_from(const Options& options) {
-  if (is_volume_name(options.volume) || !DicomSource::is_dicom(options.volume))
-    return extract_skin(options.volume, options.out, options.extraction);
   if (auto status = check_surface_name(options.out); !status.ok()) return status;
-  auto dicom = read_dicom_volume(options.volume, options.dicom);
-  if (!dicom.ok()) return dicom.status();
-  dicom->volume.remarks.insert(
-      dicom->volume.remarks.begin(),
-      absl::StrFormat("series %d (%s, %d x %d x %d voxels of %.4g x %.4g x %.4g mm) was read", dicom->series_number,
-                      dicom->modality, dicom->size[0], dicom->size[1], dicom->size[2], dicom->spacing_mm[0],
-                      dicom->spacing_mm[1], dicom->spacing_mm[2]));
-  return extract_skin(std::move(dicom->volume), options.volume, options.out, options.extraction);
+  auto volume = read_any_volume(options.volume, options.dicom);
+  if (!volume.ok()) return volume.status();
+  return extract_skin(*std::move(volume), options.volume, options.out, options.extraction);
 }
 
 absl::StatusOr<ExitCode> extract(const Application& application, const Options& options) {
@@ -149,6 +144,7 @@ void add_volume_commands(CLI::App& scan, Application& application) {
                         "  lipofill scan extract head.mha --isovalue 250 --all --out bone.ply\n"
                         "  lipofill scan extract head.nii.gz --out skin.stl --smooth 20 --triangles 200000\n"
                         "  lipofill scan extract segmentation.nrrd --label 2 --smooth 30 --all --out bone.ply\n"
+                        "  lipofill scan extract segmentation.dcm --label bone --smooth 30 --all --out bone.ply\n"
                         "  lipofill scan extract dicom/ --series 3 --out skin.ply\n"
                         "  lipofill scan extract study.zip --out skin.ply\n",
                         [&application, options] { return extract(application, *options); });
@@ -163,8 +159,8 @@ void add_volume_commands(CLI::App& scan, Application& application) {
       ->capture_default_str();
   command
       ->add_option("--label", options->extraction.labels,
-                   "of a label map: the surface around voxels with this number, may be repeated; --smooth takes "
-                   "its steps away")
+                   "of a label map: the surface around voxels with this number or name, or of a tissue (skin, fat, "
+                   "muscle, bone, metal), or around all; may be repeated; --smooth takes its steps away")
       ->allow_extra_args(false);
   command->add_flag("--all", options->extraction.all_components,
                     "take every piece, not only the largest connected one");

@@ -2,6 +2,7 @@
 the results go back and are read again byte for byte.
 """
 
+import contextlib
 import json
 import os
 import pathlib
@@ -11,7 +12,7 @@ import struct
 import subprocess
 import time
 import urllib.request
-from typing import Any, Dict, Iterator, List
+from typing import Any, Dict, Iterator, List, Tuple
 
 import numpy
 import pytest
@@ -38,7 +39,7 @@ def free_port() -> int:
 class Orthanc:
     """A PACS of the test's own."""
 
-    def __init__(self, folder: pathlib.Path) -> None:
+    def __init__(self, folder: pathlib.Path, **more: Any) -> None:
         self.http, self.dicom = free_port(), free_port()
         self.address = f"TESTPACS@127.0.0.1:{self.dicom}"
         settings = {
@@ -56,6 +57,7 @@ class Orthanc:
             "DicomAlwaysAllowStore": True,
             "UnknownSopClassAccepted": True,
             "Plugins": [],
+            **more,
         }
         (folder / "orthanc.json").write_text(json.dumps(settings))
         self._log = open(folder / "orthanc.log", "wb")
@@ -80,7 +82,7 @@ class Orthanc:
     def get(self, path: str) -> Any:
         return json.loads(self.raw(path))
 
-    def stop(self) -> None:
+    def close(self) -> None:
         self._process.terminate()
         self._process.wait(30)
         self._log.close()
@@ -90,7 +92,7 @@ class Orthanc:
 def pacs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Orthanc]:
     made = Orthanc(tmp_path_factory.mktemp("pacs"))
     yield made
-    made.stop()
+    made.close()
 
 
 def element(group: int, number: int, kind: str, value: Any) -> bytes:
@@ -340,3 +342,101 @@ def test_records_of_another_face_are_refused(journey: Dict[str, Any], tmp_path: 
     make = ("records", "make", tmp_path / "jaw", "--study", journey["folder"] / "ct", "--out", tmp_path / "no")
     done = run(*make, code=2)
     assert "of the planned skin lie outside of the series" in done.stderr
+
+
+DICOMWEB = pathlib.Path("/usr/share/orthanc/plugins/libOrthancDicomWeb.so")
+
+
+def web_archive(folder: pathlib.Path, **more: Any) -> Orthanc:
+    folder.mkdir()
+    return Orthanc(folder, Plugins=[str(DICOMWEB)], DicomWeb={"Enable": True, "Root": "/dicom-web/"}, **more)
+
+
+NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
+
+
+@contextlib.contextmanager
+def tls_front(folder: pathlib.Path, port: int) -> Iterator[Tuple[int, pathlib.Path]]:
+    """TLS before a service, as clinics have it: its port, and the certificate that it shows."""
+    key, certificate = folder / "key.pem", folder / "certificate.pem"
+    subject = ("-subj", "/CN=127.0.0.1", "-addext", "subjectAltName=IP:127.0.0.1", "-days", "2")
+    files = ("-keyout", str(key), "-out", str(certificate))
+    make = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", *files, *subject]
+    subprocess.run(make, check=True, capture_output=True)
+    front = free_port()
+    (folder / "nginx.conf").write_text(f"""
+        daemon off;
+        {"user root;" if os.geteuid() == 0 else ""}
+        pid {folder}/pid;
+        error_log {folder}/error.log;
+        events {{}}
+        http {{
+          access_log off;
+          client_max_body_size 0;
+          client_body_temp_path {folder}/body;
+          proxy_temp_path {folder}/proxy;
+          fastcgi_temp_path {folder}/f;
+          uwsgi_temp_path {folder}/u;
+          scgi_temp_path {folder}/s;
+          server {{
+            listen 127.0.0.1:{front} ssl;
+            ssl_certificate {certificate};
+            ssl_certificate_key {key};
+            location / {{ proxy_pass http://127.0.0.1:{port}; }}
+          }}
+        }}""")
+    assert NGINX is not None
+    process = subprocess.Popen([NGINX, "-p", str(folder), "-c", str(folder / "nginx.conf")], stderr=subprocess.DEVNULL)
+    try:
+        deadline = time.monotonic() + 30
+        while True:
+            with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", front), timeout=1):
+                break
+            assert process.poll() is None and time.monotonic() < deadline, (folder / "error.log").read_text()
+            time.sleep(0.1)
+        yield front, certificate
+    finally:
+        process.terminate()
+        process.wait(30)
+
+
+@pytest.mark.skipif(not DICOMWEB.exists() or NGINX is None, reason="orthanc-dicomweb or nginx is not installed")
+def test_results_go_to_a_web_service_over_tls(journey: Dict[str, Any], tmp_path: pathlib.Path) -> None:
+    archive = web_archive(tmp_path / "web", AuthenticationEnabled=False)
+    with contextlib.closing(archive), tls_front(tmp_path, archive.http) as (port, certificate):
+        url = f"https://127.0.0.1:{port}/dicom-web"
+        send = ("records", "send", "--pacs", url, *journey["files"])
+        # Whom nobody vouches for gets nothing.
+        refused = run(*send, code=3).stderr
+        assert "cannot reach" in refused and "certificate" in refused
+        assert archive.get("/instances") == []
+        run(*send, "--ca", certificate)
+        instances = archive.get("/instances")
+        back = {data_set_of(archive.raw(f"/instances/{each}/file")) for each in instances}
+        assert back == {data_set_of(file.read_bytes()) for file in journey["files"]} and len(back) == 4
+        # Twice is once.
+        run(*send, "--ca", certificate)
+        assert archive.get("/instances") == instances
+
+
+@pytest.mark.skipif(not DICOMWEB.exists(), reason="orthanc-dicomweb is not installed")
+def test_what_a_web_service_does_not_take_is_told(journey: Dict[str, Any], tmp_path: pathlib.Path) -> None:
+    archive = web_archive(tmp_path / "web", AuthenticationEnabled=False)
+    try:
+        url = f"http://127.0.0.1:{archive.http}"
+        report = journey["files"][0]
+        assert "DICOMweb service?" in run("records", "send", "--pacs", f"{url}/nowhere", report, code=4).stderr
+        plain = ("records", "send", "--pacs", f"{url}/dicom-web", "--user", "clinic", report)
+        assert "use https://" in run(*plain, code=2).stderr
+        (tmp_path / "text.dcm").write_text("no DICOM")
+        text = run("records", "send", "--pacs", f"{url}/dicom-web", tmp_path / "text.dcm", code=2)
+        assert "is not a file of DICOM" in text.stderr
+        torn = tmp_path / "torn.dcm"
+        torn.write_bytes(report.read_bytes()[:200])
+        assert "did not take" in run("records", "send", "--pacs", f"{url}/dicom-web", torn, code=4).stderr
+        run("records", "send", "--pacs", f"{url}/dicom-web/", report)
+        assert len(archive.get("/instances")) == 1
+    finally:
+        archive.close()
+    gone = run("records", "send", "--pacs", f"{url}/dicom-web", report, code=3)
+    assert "cannot reach" in gone.stderr

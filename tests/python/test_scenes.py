@@ -9,6 +9,7 @@ import shutil
 import subprocess
 from typing import Any, Dict
 
+import numpy
 import pytest
 
 import lipofill
@@ -121,10 +122,40 @@ def test_a_surface_is_converted_from_python(result: pathlib.Path, tmp_path: path
 
 def test_wrong_input_says_what_to_do(result: pathlib.Path, tmp_path: pathlib.Path) -> None:
     for arguments, message in (
-        ((result, "--out", tmp_path / "face.stl"), "must end in .glb, .mrml or .vtu"),
+        ((result, "--out", tmp_path / "face.stl"), "must end in .glb, .mrml, .vtu, .mp4 or .webm"),
         ((tmp_path, "--out", tmp_path / "face.glb"), "is not a folder that lipofill run has written"),
         ((result, "--out", tmp_path / "no" / "face.glb"), "cannot write"),
     ):
         command = [os.environ["LIPOFILL"], "scene", *map(str, arguments)]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         assert done.returncode == 2 and message in done.stderr, done.stderr
+
+
+@pytest.mark.skipif(shutil.which("ffprobe") is None, reason="ffmpeg is not installed")
+@pytest.mark.parametrize("name, codec", [("rise.mp4", "h264"), ("rise.webm", "vp9")])
+def test_a_film_shows_the_rise(result: pathlib.Path, tmp_path: pathlib.Path, name: str, codec: str) -> None:
+    run("scene", result, "--out", tmp_path / name, "--play-s", 1)
+    show = ["-count_frames", "-show_entries", "stream=codec_name,width,height,nb_read_frames,pix_fmt", "-of", "json"]
+    probed = subprocess.run(["ffprobe", "-v", "error", *show, str(tmp_path / name)], capture_output=True, check=True)
+    (stream,) = json.loads(probed.stdout)["streams"]
+    assert stream["codec_name"] == codec and stream["pix_fmt"] == "yuv420p"
+    assert (stream["width"], stream["height"]) == (960, 960)
+    assert int(stream["nb_read_frames"]) == 50, "a second of motion and one of the result, at 25 a second"
+
+    # The skin is pale at rest and has the colours of its displacement at the end.
+    unpack = ["ffmpeg", "-v", "error", "-i", str(tmp_path / name), "-f", "rawvideo", "-pix_fmt", "gray", "-"]
+    pixels = subprocess.run(unpack, capture_output=True, check=True).stdout
+    frames = numpy.frombuffer(pixels, numpy.uint8).reshape(50, 960, 960).astype(float)[:, 100:850, :800]
+    changes = numpy.abs(frames - frames[0]).mean(axis=(1, 2))
+    assert changes[24] > 1 and changes[12] > 0.2 * changes[24]
+    assert numpy.abs(frames[49] - frames[25]).mean() < 1, "it stands still at the end"
+
+
+def test_what_no_film_can_show_is_said(result: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    command = [os.environ["LIPOFILL"], "scene", str(result), "--out", str(tmp_path / "a.mp4"), "--colour", "pressure"]
+    refused = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert refused.returncode == 2 and "a film shows the lift" in refused.stderr
+    (tmp_path / "empty").mkdir()
+    command = [os.environ["LIPOFILL"], "scene", str(tmp_path / "empty"), "--out", str(tmp_path / "a.mp4")]
+    empty = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert empty.returncode == 2 and "is not a folder that lipofill run" in empty.stderr

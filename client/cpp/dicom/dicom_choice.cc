@@ -55,6 +55,9 @@ absl::StatusOr<DicomSeries> choose_default(const std::filesystem::path& source, 
 
 absl::Status check_has_images(const std::filesystem::path& source, const DicomListing& listing) {
   if (!listing.series.empty()) return absl::OkStatus();
+  if (listing.other_files + listing.without_image + listing.unreadable_files == 0)
+    return bad_volume(source,
+                      "holds no DICOM image, only texts or nothing: name the folder or zip with those of a CT or MR");
   std::string what = "holds no DICOM image: ";
   absl::StrAppend(&what, listing.other_files, " files are no DICOM (empty, encrypted, or of another kind)");
   if (listing.without_image > 0) absl::StrAppend(&what, ", ", listing.without_image, " hold no image");

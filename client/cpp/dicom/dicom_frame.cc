@@ -52,9 +52,11 @@ size_t patient_of(DcmItem* data_set) {
 /// Finds what keeps the pixels from being one number each.
 std::string find_pixel_problem(DcmItem* data_set) {
   const int64_t samples = whole_number_of(data_set, DCM_SamplesPerPixel, 1);
-  if (samples != 1) return absl::StrCat("has ", samples, " samples a pixel, a picture in colour, where 1 is read");
+  if (samples != 1)
+    return absl::StrCat("has ", samples,
+                        " samples a pixel, a picture in colour, where 1 is read: name the images of the scanner");
   const int64_t allocated = whole_number_of(data_set, DCM_BitsAllocated, 0);
-  if (allocated == 1) return "has 1 bit a pixel, a segmentation";
+  if (allocated == 1) return "has 1 bit a pixel, a segmentation: name its file, or its series by --series";
   if (allocated != 8 && allocated != 16 && allocated != 32)
     return absl::StrCat("has ", allocated, " bits a pixel, not 8, 16 or 32");
   const int64_t stored = whole_number_of(data_set, DCM_BitsStored, allocated);
@@ -75,7 +77,8 @@ std::string take_geometry(const FrameFields& fields, DicomFrame* frame) {
   const auto orientation = fields.numbers(DCM_PlaneOrientationSequence, DCM_ImageOrientationPatient, 6);
   if (!position || !orientation) {
     return absl::StrCat("has no ", position ? "ImageOrientationPatient" : "ImagePositionPatient",
-                        " of finite numbers, so it is not known where it lies in the patient (a secondary capture?)");
+                        " of finite numbers, so it is not known where it lies in the patient (a secondary capture?): "
+                        "export the original images");
   }
   std::copy_n(position->begin(), 3, frame->position.begin());
   std::copy_n(orientation->begin(), 6, frame->orientation.begin());
@@ -88,10 +91,11 @@ std::string take_geometry(const FrameFields& fields, DicomFrame* frame) {
                         ", which is not two unit vectors at right angles");
   }
   const auto spacing = fields.numbers(DCM_PixelMeasuresSequence, DCM_PixelSpacing, 2);
-  if (!spacing) return "has no PixelSpacing of two numbers";
+  if (!spacing) return "has no PixelSpacing of two numbers: export it from where it was made";
   frame->spacing = {(*spacing)[1], (*spacing)[0]};
   for (const double mm : frame->spacing) {
-    if (!(mm > 1e-3 && mm < 100.0)) return absl::StrCat("has PixelSpacing ", mm, " mm, not in (0.001, 100)");
+    if (!(mm > 1e-3 && mm < 100.0))
+      return absl::StrCat("has PixelSpacing ", mm, " mm, not in (0.001, 100): export it from where it was made");
   }
   return {};
 }
@@ -176,7 +180,7 @@ absl::StatusOr<std::vector<DicomFrame>> read_dicom_frames(const std::filesystem:
     if (loaded.bad()) return absl::InvalidArgumentError("is cut short or damaged");
     return std::vector<DicomFrame>();
   }
-  if (loaded.bad()) common.problem = "is cut short or damaged";
+  if (loaded.bad()) common.problem = "is cut short or damaged: copy or export it again";
   if (loaded.good() && !data_set->tagExists(DCM_PixelData)) return std::vector<DicomFrame>();
   const int64_t count = whole_number_of(data_set, DCM_NumberOfFrames, 1);
   if (count < 1 || count > kMaxFrames)

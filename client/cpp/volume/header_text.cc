@@ -91,7 +91,10 @@ Line take_line(absl::string_view line, HeaderDialect dialect, HeaderText* text) 
   if (line.front() == '#') return Line::kNote;
   const size_t middle = line.find_first_of(is_nrrd ? ":" : "=:");
   if (middle == absl::string_view::npos) return is_nrrd ? Line::kWrong : Line::kNote;
-  if (is_nrrd && line.substr(middle, 2) == ":=") return Line::kNote;
+  if (is_nrrd && line.substr(middle, 2) == ":=") {
+    text->notes[std::string(line.substr(0, middle))] = std::string(absl::StripAsciiWhitespace(line.substr(middle + 2)));
+    return Line::kNote;
+  }
   const std::string key = absl::AsciiStrToLower(absl::StripAsciiWhitespace(line.substr(0, middle)));
   if (is_nrrd && !is_nrrd_field(key)) return Line::kWrong;
   text->values[key] = std::string(absl::StripAsciiWhitespace(line.substr(middle + 1)));

@@ -18,6 +18,7 @@ namespace lipofill::client {
 struct HeaderText {
   std::string first_line;
   std::map<std::string, std::string> values;  ///< keys in lower case
+  std::map<std::string, std::string> notes;   ///< "key:=value" of a NRRD, keys as they are written
   std::vector<std::string> files;             ///< the lines behind a data file that is LIST, a file each
   uint64_t end = 0;                           ///< offset of the first byte after it
 

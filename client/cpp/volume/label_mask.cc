@@ -14,7 +14,7 @@
 namespace lipofill::client {
 namespace {
 
-constexpr size_t kMostLabels = 4096;
+constexpr size_t kMostValues = 4096;
 constexpr size_t kMostNamed = 20;
 
 /// Marks the voxels of the labels wanted, and lists all values there are, as far as they may be
@@ -25,14 +25,14 @@ std::set<double> mark(const Volume& map, const std::set<double>& wanted, unsigne
   const T* const voxels = static_cast<const T*>(values->GetVoidPointer(0));
   std::set<double> found;
   double last = 0.0;
-  bool last_is_wanted = wanted.count(0.0) > 0;
+  bool last_is_wanted = false;
   for (vtkIdType k = 0; k < values->GetNumberOfTuples(); ++k) {
     const double value = map.slope * static_cast<double>(voxels[k]) + map.intercept;
     // Neighbours mostly have the same label.
     if (k == 0 || value != last) {
       last = value;
-      last_is_wanted = wanted.count(value) > 0;
-      if (found.size() <= kMostLabels) found.insert(value);
+      last_is_wanted = wanted.empty() ? value != 0.0 : wanted.count(value) > 0;
+      if (found.size() <= kMostValues) found.insert(value);
     }
     mask[k] = last_is_wanted ? 1 : 0;
   }
@@ -61,8 +61,8 @@ absl::StatusOr<Volume> mask_labels(const std::filesystem::path& source, const Vo
   std::set<double> wanted;
   for (const int64_t label : labels) wanted.insert(static_cast<double>(label));
   const std::set<double> found = mark_voxels(map, wanted, mask->GetPointer(0));
-  if (found.size() > kMostLabels) {
-    return bad_volume(source, absl::StrCat("is no label map: it has more than ", kMostLabels,
+  if (found.size() > kMostValues) {
+    return bad_volume(source, absl::StrCat("is no label map: it has more than ", kMostValues,
                                            " different values; give an isovalue in place of a label"));
   }
   for (const double label : wanted) {

@@ -5,6 +5,8 @@
 #include <optional>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
@@ -123,6 +125,20 @@ absl::Status set_files(const std::filesystem::path& file, const HeaderText& text
   return absl::OkStatus();
 }
 
+/// The names that 3D Slicer gives to labels: "Segment0_LabelValue:=1" and "Segment0_Name:=bone".
+LabelNames names_of_segments(const HeaderText& text) {
+  constexpr absl::string_view kName = "_Name", kValue = "_LabelValue";
+  LabelNames names;
+  for (const auto& [key, name] : text.notes) {
+    if (!absl::StartsWith(key, "Segment") || !absl::EndsWith(key, kName)) continue;
+    const std::string segment = key.substr(0, key.size() - kName.size());
+    const auto value = text.notes.find(absl::StrCat(segment, kValue));
+    int64_t label = 0;
+    if (value != text.notes.end() && absl::SimpleAtoi(value->second, &label)) names[label] = name;
+  }
+  return names;
+}
+
 }  // namespace
 
 absl::StatusOr<VolumeHeader> parse_nrrd_header(const std::filesystem::path& file) {
@@ -133,6 +149,7 @@ absl::StatusOr<VolumeHeader> parse_nrrd_header(const std::filesystem::path& file
   if (auto status = set_voxels(file, *text, &header); !status.ok()) return status;
   if (auto status = set_files(file, *text, &header); !status.ok()) return status;
   if (auto status = set_nrrd_geometry(file, *text, &header); !status.ok()) return status;
+  header.label_names = names_of_segments(*text);
   return header;
 }
 

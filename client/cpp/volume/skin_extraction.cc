@@ -24,6 +24,7 @@
 #include "client/cpp/io/vtk_messages.h"
 #include "client/cpp/volume/header_text.h"
 #include "client/cpp/volume/label_mask.h"
+#include "client/cpp/volume/tissue_labels.h"
 #include "client/cpp/volume/value_range.h"
 
 namespace lipofill::client {
@@ -167,7 +168,9 @@ absl::StatusOr<ExtractedSkin> extract_skin(Volume volume, const std::filesystem:
   if (auto status = check_surface_name(out); !status.ok()) return status;
   const bool by_label = !options.labels.empty();
   if (by_label) {
-    auto mask = mask_labels(source, volume, options.labels);
+    const auto labels = choose_labels(source, volume.label_names, options.labels);
+    if (!labels.ok()) return labels.status();
+    auto mask = mask_labels(source, volume, *labels);
     if (!mask.ok()) return mask.status();
     volume = *std::move(mask);
   }

@@ -12,11 +12,13 @@
 namespace lipofill::client {
 
 struct SkinExtraction {
-  double isovalue = -300.0;          ///< in the volume's own values; -300 HU is the skin in a CT
-  std::vector<int64_t> labels = {};  ///< of a label map: what lies in voxels of these; the isovalue is not used
-  bool all_components = false;       ///< take everything, not only the largest connected piece
-  int smoothing_iterations = 0;      ///< windowed sinc; 0: none
-  uint64_t target_triangles = 0;     ///< decimate down to about as many; 0: not at all
+  double isovalue = -300.0;  ///< in the volume's own values; -300 HU is the skin in a CT
+  /// Of a label map: what lies in voxels of these, numbers, names or tissues as choose_labels() has
+  /// them; the isovalue is not used.
+  std::vector<std::string> labels = {};
+  bool all_components = false;    ///< take everything, not only the largest connected piece
+  int smoothing_iterations = 0;   ///< windowed sinc; 0: none
+  uint64_t target_triangles = 0;  ///< decimate down to about as many; 0: not at all
 };
 
 /// Result of the extraction.

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace lipofill::client {
 
 /// Row-major 4 x 4 affine map.
 using Affine = std::array<double, 16>;
+
+/// What a label map calls its labels.
+using LabelNames = std::map<int64_t, std::string>;
 
 /// The header of a volume file, checked against the file before any voxel is kept.
 struct VolumeHeader {
@@ -27,6 +31,7 @@ struct VolumeHeader {
   Affine index_to_mm{};
   /// "LPS" (x left, y back, z up), or "the file's own" where the header names no patient axes.
   std::string frame;
+  LabelNames label_names;            ///< of a segmentation that names what its labels are
   std::vector<std::string> remarks;  ///< what was odd in the file, and how it was understood
 
   uint64_t voxel_count() const { return size[0] * size[1] * size[2]; }

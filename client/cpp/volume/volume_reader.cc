@@ -97,6 +97,7 @@ absl::StatusOr<Volume> read_volume(const std::filesystem::path& file) {
   volume.slope = header->slope;
   volume.intercept = header->intercept;
   volume.frame = header->frame;
+  volume.label_names = header->label_names;
   volume.remarks = header->remarks;
   vtkDataArray* values = volume.voxels->GetPointData()->GetScalars();
   absl::Status status;

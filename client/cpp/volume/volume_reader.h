@@ -23,7 +23,8 @@ struct Volume {
   std::vector<std::array<double, 3>> slice_origins;
   double slope = 1.0;  ///< value = slope * voxel + intercept
   double intercept = 0.0;
-  std::string frame;  ///< "LPS" (x left, y back, z up), or "the file's own"
+  std::string frame;       ///< "LPS" (x left, y back, z up), or "the file's own"
+  LabelNames label_names;  ///< of a segmentation that names what its labels are
   std::vector<std::string> remarks;
 };
 

@@ -141,7 +141,7 @@ def extract_skin(
     out: PathLike,
     *,
     isovalue: float = -300.0,
-    labels: Sequence[int] = (),
+    labels: Sequence[Union[int, str]] = (),
     series: Optional[Union[int, str]] = None,
     all_components: bool = False,
     smooth: int = 0,
@@ -156,8 +156,9 @@ def extract_skin(
         .mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz or .hdr, or a folder, a zip or a file of DICOM.
     out : path
         .obj, .ply or .stl.
-    labels : sequence of int
-        Of a label map: the surface around voxels with these numbers; the isovalue is not used then.
+    labels : sequence of int or str
+        Of a label map or DICOM-SEG: the surface around voxels with these numbers or names, or of
+        these tissues ("skin", "fat", "muscle", "bone"), or of "all"; the isovalue is not used then.
     series : int or str, optional
         Of DICOM: SeriesNumber or SeriesInstanceUID; default: the largest axial CT.
     all_components : bool

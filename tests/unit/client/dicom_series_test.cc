@@ -195,7 +195,7 @@ TEST_F(DicomSeriesTest, RefusesWhatIsNoVolume) {
               }),
               HasSubstr("two of its images lie at the same place"));
   EXPECT_THAT(refusal_with([](DcmDataset* d, int) { d->findAndDeleteElement(DCM_ImagePositionPatient); }),
-              HasSubstr("a secondary capture?"));
+              HasSubstr("a secondary capture?): export the original images"));
   EXPECT_THAT(refusal_with([](DcmDataset* d, int) { d->putAndInsertUint16(DCM_SamplesPerPixel, 3); }),
               HasSubstr("has 3 samples a pixel"));
   EXPECT_THAT(refusal_with([](DcmDataset* d, int k) {
@@ -221,7 +221,7 @@ TEST_F(DicomSeriesTest, ATruncatedFileIsNamed) {
   series_.write(folder_ / "ct");
   const auto file = folder_ / "ct" / "IM0005";
   std::filesystem::resize_file(file, std::filesystem::file_size(file) - 700);
-  EXPECT_THAT(dicom_refusal_of("ct"), HasSubstr("IM0005, is cut short or damaged"));
+  EXPECT_THAT(dicom_refusal_of("ct"), HasSubstr("IM0005, is cut short or damaged: copy or export it again"));
 }
 
 TEST_F(DicomSeriesTest, AFolderWithoutImagesSaysWhatItHolds) {

@@ -376,16 +376,16 @@ TEST_F(VolumeKindsTest, LabelsOfALabelMap) {
   }
   const auto file = write("map.mha", with_voxels(metaimage(ball_), voxels));
   SkinExtraction options;
-  options.labels = {3};
+  options.labels = {"3"};
   const auto half = extract_skin(file, folder_ / "half.ply", options);
   ASSERT_TRUE(half.ok()) << half.status();
   EXPECT_NEAR(half->bounds_mm[0], 20 - 14, 0.51);
   EXPECT_NEAR(half->bounds_mm[1], 20.5, 1e-6);
-  options.labels = {3, 5};
+  options.labels = {"3", "5"};
   const auto both = extract_skin(file, folder_ / "both.ply", options);
   ASSERT_TRUE(both.ok()) << both.status();
   EXPECT_NEAR(both->bounds_mm[1], 20 + 14, 0.51);
-  options.labels = {4};
+  options.labels = {"4"};
   EXPECT_THAT(std::string(extract_skin(file, folder_ / "none.ply", options).status().message()),
               HasSubstr("no voxel of label 4; its labels are 0, 3, 5"));
 }

@@ -28,7 +28,7 @@ std::string from_environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// Over the web where the address is a URL, else by DIMSE; returns what to call the archive.
+/// Sends over the web where the address is a URL, else by DIMSE; returns what to call the archive.
 absl::StatusOr<std::string> send_files(const Options& options) {
   const std::vector<std::filesystem::path> files(options.files.begin(), options.files.end());
   if (is_web_address(options.pacs)) {

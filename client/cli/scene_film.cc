@@ -67,7 +67,7 @@ class MovingSkin {
   }
 
  private:
-  /// Linear between stills, from rest at time 0.
+  /// Displacement is linear between stills, from rest at time 0.
   Eigen::Matrix3Xd displacement_at(double time_s) const {
     const auto after = std::find_if(motion_.stills.begin(), motion_.stills.end(),
                                     [time_s](const SkinStill& still) { return still.time_s >= time_s; });

@@ -16,7 +16,7 @@ struct FilmOptions {
 
 inline constexpr double kUsualPlayS = 4.0;
 inline constexpr int kFramesPerSecond = 25;
-/// At the end the result stands still for so long.
+/// The result stands still for so long at the end.
 inline constexpr double kStandS = 1.0;
 
 /// Tells whether a file is to be a film: .mp4 (H.264) or .webm (VP9).

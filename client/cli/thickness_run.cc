@@ -18,7 +18,7 @@
 namespace lipofill::client {
 namespace {
 
-/// What a layer may be: thinner hexahedra hardly hold, and deeper bone belongs to another part.
+/// Layers lie between these: thinner hexahedra hardly hold, and deeper bone belongs elsewhere.
 constexpr double kThinnestMm = 0.5;
 constexpr double kDeepestLayerMm = 30.0;
 

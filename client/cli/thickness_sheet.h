@@ -23,7 +23,7 @@ struct MeasuredLayer {
   double deep_share = 0.0;  ///< deeper than the greatest, which stands for it
 };
 
-/// What a measurement found, for files and people.
+/// A sheet is what a measurement found, for files and people.
 struct ThicknessSheet {
   std::vector<MeasuredLayer> layers;
   std::vector<std::string> untouched;  ///< layers that stay as the plan has them

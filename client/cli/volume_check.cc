@@ -24,7 +24,7 @@ nlohmann::ordered_json labels_of(const Volume& volume, const VolumeFacts& facts)
   return labels;
 }
 
-/// What is in DICOM beside the volume that was read.
+/// Tells what a DICOM source holds beside the volume that was read.
 void add_listing(const std::filesystem::path& source, nlohmann::ordered_json* found) {
   const auto listing = list_dicom(source);
   if (!listing.ok()) return;

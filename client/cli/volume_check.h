@@ -11,7 +11,7 @@ namespace lipofill::client {
 /// Tells whether `scan check` has a volume before it: a file of a volume, or DICOM.
 bool holds_a_volume(const std::filesystem::path& source);
 
-/// What was found in a volume, for programs: its series where it is DICOM, size, spacing, values,
+/// Tells programs what was found in a volume: its series where it is DICOM, size, spacing, values,
 /// labels with the tissues they are understood as, and remarks. Draws its middle slices where `png`
 /// names a file.
 absl::StatusOr<nlohmann::ordered_json> check_volume(const std::filesystem::path& source, const std::string& series,

@@ -55,7 +55,7 @@ struct Header {
   LabelNames names;
 };
 
-/// Where the planes lie: plane k at first + k step.
+/// Planes lie here: plane k at first + k step.
 struct Planes {
   Vector3d first, step;
   int64_t count = 0;

@@ -71,7 +71,7 @@ constexpr std::pair<const char*, Tissue> kWords[] = {{"metal", Tissue::kMetal},
 /// Short words count whole: "sat" is no "satin", "os" no "osseous part".
 constexpr size_t kShort = 3;
 
-/// Letters of ASCII alone, in small ones, parted by blanks.
+/// Leaves the ASCII letters of a name, in lower case; all else becomes blanks.
 std::string words_of(std::string_view name) {
   std::string words(name);
   for (char& c : words) {

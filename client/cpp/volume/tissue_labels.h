@@ -22,7 +22,7 @@ const char* name_of(Tissue tissue);
 /// tests/unit/client/tissue_labels_test.cc.
 std::optional<Tissue> tissue_named(std::string_view name);
 
-/// What a label of a map is.
+/// Labels of a map are these tissues, by their numbers.
 using TissueLabels = std::map<int64_t, Tissue>;
 
 /// The tissues of a label map: those its names say, and over them what the caller says.

@@ -12,7 +12,7 @@
 
 namespace lipofill::client {
 
-/// What a volume holds.
+/// These facts tell what a volume holds.
 struct VolumeFacts {
   std::array<int, 3> size{};
   std::array<double, 3> spacing_mm{};  ///< along its three axes; the mean where slices are uneven

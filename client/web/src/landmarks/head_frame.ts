@@ -14,7 +14,7 @@ export interface HeadFrame extends Axes {
 /** Points that planes are tried with, and that the best is brought to its place with. */
 const [tried, sampled] = [500, 1500];
 const faceMm = 85;
-/** What is less like a nose is none [mm]. */
+/** A point that stands out less than this is no nose [mm]. */
 const leastNose = 20;
 
 export const dot = (a: ArrayLike<number>, b: ArrayLike<number>): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -20,7 +20,7 @@ export const openGuesses = computed(() =>
   Object.fromEntries(Object.entries(guesses.value).filter(([name]) => points.value[name] === undefined)),
 );
 
-/** In the order in which they are asked for. */
+/** They are in the order in which they are asked for. */
 export const missing = computed(() => landmarkNames.filter((name) => points.value[name] === undefined));
 
 export const swapped = computed(() => swappedPairs(points.value));

@@ -105,7 +105,7 @@ export class Viewport {
     this.fit();
   }
 
-  /** For a dim room. */
+  /** The picture has a dark background, for a dim room. */
   set dark(wanted: boolean) {
     this.renderer.setBackground(...(wanted ? darkBackground : background));
     this.request();

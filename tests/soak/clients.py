@@ -21,7 +21,7 @@ PATIENCE = lipofill.RetryPolicy(patience_s=120.0)
 
 
 class Client(threading.Thread):
-    """Repeats `step` until the stop. What it raises is a complaint, and the end of this client."""
+    """Takes a `step`, and others until the stop. What one raises is a complaint, and ends it."""
 
     def __init__(self, name: str, server: str, journal: Journal, stop: threading.Event, seed: int) -> None:
         super().__init__(name=name, daemon=True)
@@ -32,6 +32,7 @@ class Client(threading.Thread):
 
     def run(self) -> None:
         try:
+            self.step()
             while not self.stop.is_set():
                 self.step()
             self.finish()

@@ -54,7 +54,7 @@ def take_sample(daemon: lipofill.Daemon, life: int, age_s: float) -> Sample:
 
 
 class Sampler:
-    """Samples a daemon twice a second until closed."""
+    """Samples a daemon twice a second until closed, and once more then."""
 
     def __init__(self, daemon: lipofill.Daemon) -> None:
         self._daemon = daemon
@@ -75,7 +75,9 @@ class Sampler:
         return take_sample(self._daemon, self._life, time.monotonic() - self._born)
 
     def _run(self) -> None:
-        while not self._closed.wait(INTERVAL_S):
+        is_last = False
+        while not is_last:
+            is_last = self._closed.wait(INTERVAL_S)
             if self._daemon.pid != self._pid:
                 self._life, self._pid, self._born = self._life + 1, self._daemon.pid, time.monotonic()
             try:

@@ -55,10 +55,10 @@ class Soak:
 
     def run(self) -> List[Check]:
         """The whole soak; its checks."""
-        started = time.monotonic()
         self.daemon.start()
         self.sampler = Sampler(self.daemon)
         clients, reapers = self._clients(), self._reapers()
+        started = time.monotonic()
         for thread in [*clients, *reapers]:
             thread.start()
         self._wait(started, clients)

@@ -64,8 +64,9 @@ export function recallMoment(run: string, timeS: number): Frame | undefined {
 export function goToMoment(run: string, timeS: number): boolean {
   const kept = recallMoment(run, timeS);
   if (kept) store.insert(kept);
-  const there = store.at(timeS);
+  // An address has hundredths of a second: the frame may lie just behind what it says.
+  const there = kept ?? store.at(timeS);
   if (there === undefined || Math.abs(there.timeS - timeS) > nearS) return false;
-  lookAt(timeS);
+  lookAt(there.timeS);
   return true;
 }

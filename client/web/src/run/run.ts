@@ -234,11 +234,14 @@ export async function runOrPause(): Promise<void> {
   if (modelIsCurrent.value) await create(true);
 }
 
-/** Looks at a simulated time; undefined: follows the newest. */
+/**
+ * Looks at the frame at or before a simulated time; undefined: follows the newest. The moment that
+ * is looked at is that of the frame: a slider stops between frames as well.
+ */
 export function lookAt(timeS: number | undefined): void {
   batch(() => {
-    lookedAt.value = timeS;
     frame.value = timeS === undefined ? store.latest : store.at(timeS);
+    lookedAt.value = timeS === undefined ? undefined : frame.value?.timeS;
     showTime(true);
   });
 }

@@ -199,10 +199,13 @@ describe("a reload", () => {
     await time.focus();
     for (let k = 0; k < 12; ++k) await page.locator("body").press("ArrowLeft");
     await expect.poll(() => words().get("at"), soon).not.toBeNull();
+    // Between two frames as well: they lie 20 ms apart, or more where the page was slow.
+    await time.fill(`${(Number(await time.inputValue()) - 0.01).toFixed(2)}`);
     await page.waitForTimeout(1000);
     const [at, look] = [words().get("at"), words().get("camera")];
     expect(Number(at)).toBeLessThan(3);
     const shown = await page.locator(".timeline output").textContent();
+    expect(shown, "the moment in the address is that of the frame").toBe(`${at} s`);
     // The scale of the colours is that of the frames that came: the shape is what is compared.
     await page.getByRole("radio", { name: "Skin" }).click();
     await page.waitForTimeout(700);

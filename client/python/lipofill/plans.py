@@ -2,51 +2,26 @@
 
 from __future__ import annotations
 
-import difflib
 import json
 import os
-import re
 from pathlib import Path
-from typing import Mapping, Optional, Sequence, Tuple, Union
+from typing import Mapping, Optional, Sequence, Union
 
 from google.protobuf import json_format
 
 from lipofill.errors import FieldViolation, InvalidArgumentError
 from lipofill.landmarks import load_landmarks
 from lipofill.places import Shape, constant
+from lipofill.plan_fields import violations_of
 from lipofill.scans import UNITS, unit_of
 from lipofill.v1 import geometry_pb2, model_pb2, plan_pb2, simulation_pb2
 
 PathLike = Union[str, "os.PathLike[str]"]
 Field = Union[float, geometry_pb2.ScalarField]
 
-_UNKNOWN_FIELD = re.compile(
-    r'no field named "(?P<name>[^"]+)" at "Plan\.?(?P<path>[^"]*)".*?\[(?P<known>.*)\]', re.DOTALL
-)
-_UNKNOWN_NAME = re.compile(
-    r"Invalid enum value (?P<name>.+) for enum type (?P<type>[\w.]+) at Plan\.(?P<path>[^\s\"]*)"
-)
-
 
 def _field(value: Field) -> geometry_pb2.ScalarField:
     return value if isinstance(value, geometry_pb2.ScalarField) else constant(value)
-
-
-def _violations_of(message: str) -> Tuple[FieldViolation, ...]:
-    """The field that a parser's message complains of, with the nearest name there is, or all that
-    its value may be.
-    """
-    value = _UNKNOWN_NAME.search(message)
-    if value is not None:
-        known = plan_pb2.DESCRIPTOR.pool.FindEnumTypeByName(value["type"]).values_by_name
-        names = ", ".join(name for name in known if not name.endswith("_UNSPECIFIED"))
-        return (FieldViolation(value["path"].rstrip("."), f'is "{value["name"]}", must be one of {names}'),)
-    found = _UNKNOWN_FIELD.search(message)
-    if found is None:
-        return ()
-    near = difflib.get_close_matches(found["name"], re.findall(r"'(\w+)'", found["known"]), 1)
-    path = ".".join(part for part in (found["path"], found["name"]) if part)
-    return (FieldViolation(path, "is no field" + (f"; do you mean {near[0]}?" if near else "")),)
 
 
 class Plan:
@@ -98,7 +73,7 @@ class Plan:
         try:
             json_format.Parse(text, plan.message)
         except json_format.ParseError as error:
-            raise InvalidArgumentError(f"{source}: {error}", violations=_violations_of(str(error))) from None
+            raise InvalidArgumentError(f"{source}: {error}", violations=violations_of(str(error))) from None
         return plan
 
     def to_json(self) -> str:

@@ -32,6 +32,12 @@ endif()
 # position independent by themselves. tests/integration/deploy/check_hardening.py looks.
 add_link_options(-Wl,-z,relro -Wl,-z,now -Wl,-z,noexecstack)
 
+# There are some 230 programs to link. GNU gold comes with ld, and links them in a third of its time.
+find_program(GOLD_PROGRAM ld.gold)
+if(GOLD_PROGRAM)
+  add_link_options(-fuse-ld=gold)
+endif()
+
 # For the folders that programs are made of: the stack guards its returns, and calls know the size
 # of what they write to. Sanitizers do more than that.
 function(lipofill_harden)

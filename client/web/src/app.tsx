@@ -7,6 +7,7 @@ import { Dashboard } from "./dashboard/dashboard";
 import { writeAddress } from "./case/address";
 import { keeping, saved } from "./case/saved_plan";
 import { address, bindAddress, page } from "./case/restore";
+import { KeysHelp, showKeys } from "./keys_help";
 import { redoChange, undoChange } from "./keyboard";
 import { canRedo, canUndo, patientName, plan } from "./plan/state";
 import { recorded } from "./run/state";
@@ -116,9 +117,18 @@ export function App() {
         <button type="button" class="link" onClick={() => (asking.value = !asking.value)}>
           Credentials
         </button>
+        <button
+          type="button"
+          class="link keys-link"
+          aria-expanded={showKeys.value}
+          onClick={() => (showKeys.value = !showKeys.value)}
+        >
+          Keys
+        </button>
         <span class="disclaimer">Research and planning aid, not a medical device</span>
       </header>
       <Credentials />
+      <KeysHelp />
       {onPlan && <Planner />}
       {page.value === "cases" && <CaseList />}
       {page.value === "dashboard" && <Dashboard />}

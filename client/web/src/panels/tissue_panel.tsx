@@ -77,7 +77,7 @@ function Surroundings() {
 
 function Corners() {
   return (
-    <div class="row" role="group" aria-label="Correct a corner by clicking">
+    <div class="row wrap" role="group" aria-label="Correct a corner by clicking">
       <span class="quiet">Correct corner</span>
       {[0, 1, 2, 3].map((index) => (
         <button

@@ -3,7 +3,7 @@
 import { effect, signal } from "@preact/signals";
 import { scan } from "../plan/state";
 import type { View } from "../scene/views";
-import type { CameraPose } from "../scene/viewport";
+import type { CameraPose, Viewport } from "../scene/viewport";
 import { lookedAt } from "../run/state";
 import { shownScene } from "./stage_state";
 
@@ -49,6 +49,14 @@ export function lookFrom({ focus, direction, up, halfHeight }: View): void {
 export function lookAs(pose: CameraPose): void {
   held = undefined;
   place(pose);
+}
+
+/** A turn or a step by one press, also where it leads back to the page's own view. */
+export function moveCamera(move: (viewport: Viewport) => void): void {
+  held = undefined;
+  const viewport = shownScene.peek()?.viewport;
+  if (viewport) move(viewport);
+  camera.value = viewport?.pose;
 }
 
 /** From the start of the picture to its end. */

@@ -1,6 +1,7 @@
 // The picture by keyboard: arrows turn the face, or lead the tool at hand, which Enter uses.
 import type { JSX } from "preact";
 import { click, dab, tool } from "../plan/tools";
+import { moveCamera } from "./camera";
 import { addPlace } from "./rulers";
 import { keyCursor, shownScene } from "./stage_state";
 
@@ -45,13 +46,13 @@ function lead(view: HTMLElement, [dx, dy]: [number, number], by: number): void {
 
 export function onStageKey(event: JSX.TargetedKeyboardEvent<HTMLDivElement>): void {
   if (event.ctrlKey || event.metaKey || event.altKey) return;
-  const [view, viewport] = [event.currentTarget, shownScene.value?.viewport];
+  const view = event.currentTarget;
   const direction = directions[event.key];
   const hasTool = tool.value.kind !== "turn";
   if (direction && hasTool) lead(view, direction, event.shiftKey ? withShift : cursorPixels);
-  else if (direction) viewport?.turn(-turnDegrees * direction[0], -turnDegrees * direction[1]);
-  else if (event.key === "+" || event.key === "=") viewport?.approach(nearer);
-  else if (event.key === "-") viewport?.approach(1 / nearer);
+  else if (direction) moveCamera((of) => of.turn(-turnDegrees * direction[0], -turnDegrees * direction[1]));
+  else if (event.key === "+" || event.key === "=") moveCamera((of) => of.approach(nearer));
+  else if (event.key === "-") moveCamera((of) => of.approach(1 / nearer));
   else if (event.key === "Enter" && hasTool) apply(view);
   else return;
   event.preventDefault();

@@ -1,4 +1,5 @@
 // Buttons on the picture: where to look from, what is coloured, before and after, rulers, sections.
+import { signal } from "@preact/signals";
 import { midline } from "../plan/anatomy";
 import { axesOf, pointOf } from "../plan/landmarks";
 import { chart, modelMeshes, plan, region } from "../plan/state";
@@ -14,6 +15,10 @@ import { shownDistances, shownMesh, showsFrame } from "./shown";
 import { compare, dark, presenting, quantity, showRulers, shownScene, step, type Compare } from "./stage_state";
 import { Segmented } from "../widgets/fields";
 import type { Quantity } from "../scene/colour_maps";
+import { NearTools } from "./near_tools";
+
+/** In a narrow picture the buttons wait behind one. */
+const isOpen = signal(false);
 
 const axes = () => runAxes.value ?? axesOf(region.value?.landmarksMm ?? {}, region.value?.axes);
 
@@ -72,7 +77,7 @@ const views: { view: StandardView; label: string; title: string }[] = [
 
 function CompareTools() {
   return (
-    <div class="row wrap">
+    <div class="row wrap compare-tools">
       <Segmented<Compare>
         label="Compare"
         value={compare.value}
@@ -162,7 +167,15 @@ export function ViewTools() {
   ];
   if (!shownMesh.value) return null;
   return (
-    <div class="view-tools">
+    <div class={`view-tools ${isOpen.value ? "open" : ""}`}>
+      <button
+        type="button"
+        class="button small tools-key"
+        aria-expanded={isOpen.value}
+        onClick={() => (isOpen.value = !isOpen.value)}
+      >
+        {isOpen.value ? "Back to the picture" : "View…"}
+      </button>
       <div class="row wrap" role="group" aria-label="Look from">
         {views.map(({ view, label, title }) => (
           <button
@@ -190,6 +203,7 @@ export function ViewTools() {
           </button>
         )}
       </div>
+      <NearTools />
       {showsFrame.value && (step.value === "run" || shownShapeOf.value) && (
         <Segmented
           label="Colour by"

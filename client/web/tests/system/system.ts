@@ -4,7 +4,7 @@ import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:f
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
-import { chromium, type Browser, type Page } from "playwright-core";
+import { chromium, type Browser, type BrowserContextOptions, type Page } from "playwright-core";
 
 export const root = fileURLToPath(new URL("../../../../", import.meta.url));
 export const bin = process.env.LIPOFILL_BIN ?? join(root, "build/release/bin");
@@ -97,10 +97,9 @@ export class System {
   }
 
   /** A page that fails the test on any error it has not caught, and on the console. */
-  async newPage(errors: string[], width = 1440, height = 900): Promise<Page> {
-    const page = await (
-      await this.browser!.newContext({ viewport: { width, height }, acceptDownloads: true })
-    ).newPage();
+  async newPage(errors: string[], width = 1440, height = 900, more: BrowserContextOptions = {}): Promise<Page> {
+    const context = await this.browser!.newContext({ viewport: { width, height }, acceptDownloads: true, ...more });
+    const page = await context.newPage();
     page.on("pageerror", (error) => errors.push(String(error)));
     page.on("console", (message) => {
       // What a lost connection says in the console is no mistake of the page.

@@ -127,7 +127,8 @@ absl::Status make_sums(PostgresDatabase& database) {
 }
 
 absl::Status make_schema(PostgresDatabase& database) {
-  const std::string tables = absl::StrCat(kSchema, kResumeTables, kTenantIndexes, kStoreTables, kPlanTables);
+  const std::string tables =
+      absl::StrCat(kSchema, kResumeTables, kTenantIndexes, kStoreTables, kPlanTables, kOperationTables);
   absl::Status made = database.execute(to_postgres(tables).c_str());
   made.Update(database.execute(kOwnTables));
   if (made.ok()) made = make_sums(database);

@@ -34,7 +34,7 @@ std::string with_prefix(const std::string& prefix, const std::string& columns) {
   return absl::StrCat(prefix, absl::StrReplaceAll(columns, {{", ", absl::StrCat(", ", prefix)}}));
 }
 
-const std::array<SummedTable, 13> kSummedTables = {{
+const std::array<SummedTable, 15> kSummedTables = {{
     {"patients", PATIENT_COLUMNS, "id", "id", "patients/$0"},
     {"patient_labels", LABEL_COLUMNS, "patient, key", "patient", "patients/$0 (a label)"},
     {"scans", SCAN_COLUMNS, "patient, id", "patient, id", "patients/$0/scans/$1"},
@@ -51,6 +51,9 @@ const std::array<SummedTable, 13> kSummedTables = {{
     {"plan_revisions", PLAN_REVISION_COLUMNS, "patient, plan, number", "patient, plan, number",
      "patients/$0/plans/$1 (its revision $2)", 6},
     {"plan_runs", PLAN_RUN_COLUMNS, "simulation", "patient, plan", "patients/$0/plans/$1 (a run)", 6},
+    {"operations", OPERATION_COLUMNS, "id", "id", "operations/$0", 7},
+    {"operation_parts", OPERATION_PART_COLUMNS, "operation, number", "operation, number", "operations/$0 (its part $1)",
+     7},
 }};
 
 std::string check_rows(const SummedTable& table, bool has_types) {

@@ -23,6 +23,9 @@
 
 #define PLAN_COLUMNS "patient, id, revision, scan, target, content, create_time_us, update_time_us"
 #define PLAN_REVISION_COLUMNS "patient, plan, number, content, changes, create_time_us"
+#define OPERATION_COLUMNS \
+  "id, patient, tenant, method, request_id, fingerprint, request, done, response, create_time_us"
+#define OPERATION_PART_COLUMNS "operation, number, bytes"
 #define PLAN_RUN_COLUMNS "simulation, patient, plan, content_hash, create_time_us"
 
 /// An expression that is 1 for a row that is what was written, else 0.
@@ -42,7 +45,7 @@ struct SummedTable {
 };
 
 /// Every table that keeps something of a user.
-extern const std::array<SummedTable, 13> kSummedTables;
+extern const std::array<SummedTable, 15> kSummedTables;
 
 /// The statements that give every table which comes after a version of the schema its sums: the
 /// column, the sums of the rows that are there, and the triggers that sum a row when it is written,

@@ -78,6 +78,13 @@ absl::Status damaged(const std::string& path, const std::string& what) {
                    "and put that in its place; or move it away to begin with an empty store"));
 }
 
+/// Labels have no index beside their table: one whose patient rotted is found by nobody.
+absl::Status check_labels(Database& database, const std::string& path) {
+  Query stray(database, "PRAGMA foreign_key_check(patient_labels)");
+  if (stray.next()) return damaged(path, "a label is of no patient");
+  return stray.status();
+}
+
 /// The schema is rows of a table too, which may rot: statements must understand it, and the
 /// triggers must be those that were made.
 absl::Status check_schema(Database& database, const std::string& path) {
@@ -97,8 +104,8 @@ absl::Status check_schema(Database& database, const std::string& path) {
   constexpr size_t kTriggersOfFiles = 3;
   constexpr size_t kTriggersOfSums = 3;
   const size_t n_made = kTriggersOfFiles + kTriggersOfSums * kSummedTables.size();
-  return n == n_made ? absl::OkStatus()
-                     : damaged(path, absl::StrCat("it has ", n, " triggers, ", n_made, " were made"));
+  if (n != n_made) return damaged(path, absl::StrCat("it has ", n, " triggers, ", n_made, " were made"));
+  return check_labels(database, path);
 }
 
 /// "ok", or the first thing that does not fit.
@@ -130,7 +137,7 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   if (!tables.ok()) return tables.status();
   if (*version == 0 && *tables == 0)
     return change_schema(database, absl::StrCat(kSchema, kResumeTables, kTenantIndexes, kStoreTables, kFromVersion4,
-                                                kPlanTables, make_row_sums(0)));
+                                                kPlanTables, kOperationTables, make_row_sums(0)));
   const auto application = read_pragma(database, "PRAGMA application_id");
   if (!application.ok()) return application.status();
   if (*application != kApplicationId) {
@@ -145,7 +152,8 @@ absl::Status bring_up_to_date(Database& database, const std::string& path) {
   if (*version < 3) absl::StrAppend(&changes, kFromVersion2, kResumeTables);
   if (*version < 4) absl::StrAppend(&changes, kFromVersion3, kTenantIndexes);
   if (*version < 5) absl::StrAppend(&changes, kStoreTables, kFromVersion4);
-  if (*version < 6) absl::StrAppend(&changes, kPlanTables, make_row_sums(static_cast<int>(*version)));
+  if (*version < 6) absl::StrAppend(&changes, kPlanTables);
+  if (*version < 7) absl::StrAppend(&changes, kOperationTables, make_row_sums(static_cast<int>(*version)));
   if (changes.empty()) return check_schema(database, path);
   return change_schema(database, changes);
 }

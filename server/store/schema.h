@@ -8,7 +8,7 @@
 namespace lipofill::server {
 
 /// Version of the schema that this program writes, PRAGMA user_version.
-inline constexpr int kSchemaVersion = 6;
+inline constexpr int kSchemaVersion = 7;
 
 /// Checks the database, and makes indexes that do not go with their tables again. DATA_LOSS saying
 /// what is wrong and what can be done when its pages do not fit together. Checked by

@@ -78,4 +78,16 @@ CREATE TABLE plan_runs (
 CREATE INDEX plan_runs_by_plan ON plan_runs(patient, plan);
 )";
 
+/// 7: long-running operations that outlive the daemon, and their finished parts.
+inline constexpr char kOperationTables[] = R"(
+CREATE TABLE operations (
+  id BLOB PRIMARY KEY, patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, tenant BLOB NOT NULL,
+  method BLOB NOT NULL, request_id BLOB NOT NULL, fingerprint BLOB NOT NULL, request BLOB NOT NULL,
+  done INTEGER NOT NULL, response BLOB NOT NULL, create_time_us INTEGER NOT NULL);
+CREATE INDEX operations_by_patient ON operations(patient);
+CREATE TABLE operation_parts (
+  operation BLOB NOT NULL REFERENCES operations(id) ON DELETE CASCADE, number INTEGER NOT NULL,
+  bytes BLOB NOT NULL, PRIMARY KEY (operation, number));
+)";
+
 }  // namespace lipofill::server

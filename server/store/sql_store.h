@@ -58,6 +58,13 @@ class SqlStore : public Store {
   absl::Status add_plan_run(const std::string& patient, const std::string& id, const PlanRunRecord& run) override;
   absl::StatusOr<std::vector<PlanRunRecord>> list_plan_runs(const std::string& patient, const std::string& id) override;
 
+  absl::Status create_operation(const OperationRecord& operation) override;
+  absl::StatusOr<std::vector<OperationRecord>> list_operations() override;
+  absl::Status keep_operation_part(const std::string& id, int number, const std::string& bytes) override;
+  absl::StatusOr<std::optional<std::string>> get_operation_part(const std::string& id, int number) override;
+  absl::Status finish_operation(const std::string& id, const std::string& response_message) override;
+  absl::Status forget_operation(const std::string& id) override;
+
   absl::StatusOr<SimulationRecord> create_simulation(const SimulationRecord& simulation,
                                                      const RequestKey& request) override;
   absl::StatusOr<SimulationRecord> get_simulation(const std::string& id) override;

@@ -7,19 +7,20 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "server/store/operation_store.h"
 #include "server/store/plan_store.h"
 #include "server/store/records.h"
 
 namespace lipofill::server {
 
-/// Patients, scans (their records, not their bytes), models, plans, simulations and their results,
-/// durable and transactional: every call either happens whole or not at all. All calls may come
-/// from any thread.
+/// Patients, scans (their records, not their bytes), models, plans, long-running operations,
+/// simulations and their results, durable and transactional: every call either happens whole or not
+/// at all. All calls may come from any thread.
 ///
 /// Errors: NOT_FOUND and ALREADY_EXISTS naming the resource, FAILED_PRECONDITION, INVALID_ARGUMENT
 /// for a request id that was used for another request, DATA_LOSS and UNAVAILABLE from the medium.
 /// Checked by tests/unit/server/store/store_test.cc.
-class Store : public PlanStore {
+class Store : public PlanStore, public OperationStore {
  public:
   /// Creates return the record now in the store: the one given, or the one an equal request made
   /// before.

@@ -15,8 +15,8 @@ namespace lipofill::server {
 
 /// Makes a store in a data directory that has one of everything: a patient with a label, a scan
 /// with its file, a model, a simulation with a command, a checkpoint, series and result, a plan
-/// that it was made from, and a request. The database is a file there, unless another place is
-/// given.
+/// that it was made from, an operation with a part, and a request. The database is a file there,
+/// unless another place is given.
 inline std::unique_ptr<SqlStore> make_full_store(const std::filesystem::path& data, const std::string& place = "") {
   std::filesystem::create_directories(data);
   auto opened = SqlStore::open(place.empty() ? (data / "lipofill.sqlite").string() : place);
@@ -69,6 +69,8 @@ inline std::unique_ptr<SqlStore> make_full_store(const std::filesystem::path& da
   plan.create_time_us = 5;
   EXPECT_TRUE(store->create_plan(plan, {}).ok());
   EXPECT_TRUE(store->add_plan_run("anna", "plan-1", {"sim-1", "its hash", 6}).ok());
+  EXPECT_TRUE(store->create_operation({"op-1", "anna", "local", "MakeForecast", "r2", "g", "what is asked"}).ok());
+  EXPECT_TRUE(store->keep_operation_part("op-1", 3, "what was found").ok());
   return store;
 }
 

@@ -53,6 +53,11 @@ class Answers {
     add(revision.ok() ? revision->content_message + revision->changes_message : "", revision.status());
     const auto runs = store.list_plan_runs("anna", "plan-1");
     add(runs.ok() && !runs->empty() ? runs->front().simulation + runs->front().content_hash : "", runs.status());
+    const auto operations = store.list_operations();
+    add(operations.ok() && !operations->empty() ? operations->front().method + operations->front().request_message : "",
+        operations.status());
+    const auto part = store.get_operation_part("op-1", 3);
+    add(part.ok() ? part->value_or("") : "", part.status());
     const auto request = store.find_request({"Create", "r1", "f"});
     add(request.ok() && request->has_value() ? **request : "", request.status());
   }

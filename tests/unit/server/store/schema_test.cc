@@ -114,6 +114,30 @@ std::string sums_of_version_5() {
   return statements.substr(0, statements.find("\nALTER TABLE plans "));
 }
 
+/// Version 6 has plans.
+constexpr char kVersion6[] = R"(
+CREATE TABLE plans (
+  patient BLOB NOT NULL REFERENCES patients(id) ON DELETE CASCADE, id BLOB NOT NULL, revision INTEGER NOT NULL,
+  scan BLOB NOT NULL, target BLOB NOT NULL, content BLOB NOT NULL, create_time_us INTEGER NOT NULL,
+  update_time_us INTEGER NOT NULL, PRIMARY KEY (patient, id));
+CREATE TABLE plan_revisions (
+  patient BLOB NOT NULL, plan BLOB NOT NULL, number INTEGER NOT NULL, content BLOB NOT NULL, changes BLOB NOT NULL,
+  create_time_us INTEGER NOT NULL, PRIMARY KEY (patient, plan, number),
+  FOREIGN KEY (patient, plan) REFERENCES plans(patient, id) ON DELETE CASCADE);
+CREATE TABLE plan_runs (
+  simulation BLOB PRIMARY KEY REFERENCES simulations(id) ON DELETE CASCADE, patient BLOB NOT NULL,
+  plan BLOB NOT NULL, content_hash BLOB NOT NULL, create_time_us INTEGER NOT NULL,
+  FOREIGN KEY (patient, plan) REFERENCES plans(patient, id) ON DELETE CASCADE);
+CREATE INDEX plan_runs_by_plan ON plan_runs(patient, plan);
+PRAGMA user_version = 6;
+)";
+
+/// What is summed since then.
+std::string sums_of_version_6() {
+  std::string statements = make_row_sums(5);
+  return statements.substr(0, statements.find("\nALTER TABLE operations "));
+}
+
 constexpr char kContent[] = R"(
 INSERT INTO patients (id, display_name, create_time_us) VALUES (x'61', x'6e616d65', 1);
 INSERT INTO patient_labels VALUES (x'61', x'6b', x'76');
@@ -157,6 +181,8 @@ class SchemaTest : public ::testing::TestWithParam<int> {
     ASSERT_TRUE((*database)->execute(version >= 4 ? kRequestOfTenant : kRequest).ok());
     ASSERT_TRUE((*database)->execute(version >= 5 ? kVersion5 : "").ok());
     ASSERT_TRUE((*database)->execute(version >= 5 ? sums_of_version_5().c_str() : "").ok());
+    ASSERT_TRUE((*database)->execute(version >= 6 ? kVersion6 : "").ok());
+    ASSERT_TRUE((*database)->execute(version >= 6 ? sums_of_version_6().c_str() : "").ok());
   }
   lipofill::testing::TemporaryDirectory directory_;
   std::string path_ = directory_.file("db");
@@ -190,6 +216,7 @@ TEST_P(SchemaTest, IsBroughtUpToDateWithAllItHeld) {
       EXPECT_EQ(unended->front().id, "r");
     }
     EXPECT_TRUE((*store)->list_plans({}, "a", {}, 1)->empty());
+    EXPECT_TRUE((*store)->list_operations()->empty());
     EXPECT_EQ((*store)->owner_of_patient("a")->tenant, "local") << "what there was is the machine's own user's";
     EXPECT_EQ((*store)->owner_of_simulation("s")->tenant, "local");
     EXPECT_EQ((*store)->list_patients({}, {"", 10})->size(), 1u);
@@ -207,7 +234,7 @@ TEST_P(SchemaTest, EndsInTheShapeOfANewOne) {
 TEST_P(SchemaTest, StaysAsItIsWhenTheChangeFails) {
   make(GetParam());
   // One of the last changes finds its name taken.
-  ASSERT_TRUE((*SqliteDatabase::open(path_))->execute("CREATE TABLE plan_runs (x)").ok());
+  ASSERT_TRUE((*SqliteDatabase::open(path_))->execute("CREATE TABLE operation_parts (x)").ok());
   const std::set<std::string> before = shape_of(path_);
   EXPECT_FALSE(SqlStore::open(path_).ok());
   EXPECT_EQ(shape_of(path_), before);

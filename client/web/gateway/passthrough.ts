@@ -8,6 +8,7 @@ import { Code, ConnectError, type ConnectRouter, type HandlerContext, type Trans
 import { createGrpcTransport } from "@connectrpc/connect-node";
 import { readFileSync } from "node:fs";
 import { connect as connectSocket } from "node:net";
+import { ForecastService } from "@wire/forecast_service_pb";
 import { FrameService } from "@wire/frame_service_pb";
 import { OperationService } from "@wire/operation_service_pb";
 import { PatientService } from "@wire/patient_service_pb";
@@ -16,7 +17,15 @@ import { PlanningService } from "@wire/planning_service_pb";
 import { SimulationService } from "@wire/simulation_service_pb";
 import type { CallerTransports } from "./callers";
 
-const services = [FrameService, OperationService, PatientService, PlanService, PlanningService, SimulationService];
+const services = [
+  ForecastService,
+  FrameService,
+  OperationService,
+  PatientService,
+  PlanService,
+  PlanningService,
+  SimulationService,
+];
 const passedBack = ["x-request-id"];
 
 /** "Bearer " and a token of at most 8 KiB, which is all that the daemon looks at. */

@@ -2,6 +2,7 @@
 import { createClient, type Interceptor } from "@connectrpc/connect";
 import { createGrpcWebTransport } from "@connectrpc/connect-web";
 import { signal } from "@preact/signals";
+import { ForecastService } from "@wire/forecast_service_pb";
 import { FrameService } from "@wire/frame_service_pb";
 import { OperationService } from "@wire/operation_service_pb";
 import { PatientService } from "@wire/patient_service_pb";
@@ -36,4 +37,5 @@ export const simulations = createClient(SimulationService, transport);
 export const frames = createClient(FrameService, transport);
 export const plans = createClient(PlanService, transport);
 export const planning = createClient(PlanningService, transport);
+export const forecasts = createClient(ForecastService, transport);
 export const operations = createClient(OperationService, transport);

@@ -5,6 +5,8 @@ import { lookAt } from "../run/run";
 import { rows, simulation, timeShown } from "../run/state";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { Plot } from "../widgets/plot";
+import { showsForecast } from "../forecast/state";
+import { ForecastFigures } from "./forecast_figures";
 import { ZoneTable } from "./zone_table";
 
 function Figure({
@@ -81,6 +83,10 @@ function Remarks() {
 }
 
 export function Figures() {
+  return showsForecast.value ? <ForecastFigures /> : <RunFigures />;
+}
+
+function RunFigures() {
   const row = rowNow();
   const all = rows.value;
   const times = all.map(({ timeS }) => timeS);

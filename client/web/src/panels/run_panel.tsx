@@ -16,6 +16,7 @@ import { distance, hasResult, isRunning, isUnderWay, recorded, simulation, state
 import { FileButton, NumberField, Section, SelectField } from "../widgets/fields";
 import { quantity } from "../stage/stage_state";
 import { AddedFat } from "./added_fat";
+import { ForecastSection } from "./forecast_section";
 import { Exports, Recorded } from "./take_home";
 
 const more = signal({ zone: "", volumeMl: 0.5 as number | undefined, rateMlPerS: 1 as number | undefined });
@@ -202,6 +203,7 @@ export function RunPanel() {
       {isUnderWay.value && <InjectMore />}
       {state.value === Simulation_State.SETTLED && !recorded.value && <AddedFat />}
       {hasResult.value && !recorded.value && <Target />}
+      {!recorded.value && <ForecastSection />}
       <Exports />
       <Recorded />
     </>

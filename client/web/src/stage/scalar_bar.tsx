@@ -25,6 +25,27 @@ function Bands({ map }: { map: ColourMap }) {
   );
 }
 
+/** Numbers of one kind, without words for the ends. */
+export function ColourBar({ map, label, unit }: { map: ColourMap; label: string; unit: string }) {
+  const marks = [0, 0.25, 0.5, 0.75, 1].map((share) => map.low + share * (map.high - map.low));
+  return (
+    <div class="scalar-bar" role="img" aria-label={`${label}, from ${map.low} to ${map.high} ${unit}`}>
+      <div class="scalar-title">
+        {label}
+        <br />
+        <span class="quiet">{unit}</span>
+      </div>
+      <div class="bar" style={{ background: gradient(map) }}>
+        {marks.map((mark, k) => (
+          <span key={k} style={{ bottom: `${k * 25}%` }}>
+            {Number(mark.toPrecision(3))}
+          </span>
+        ))}
+      </div>
+    </div>
+  );
+}
+
 export function ScalarBar({ map, quantity }: { map: ColourMap; quantity: Quantity }) {
   const { label, unit } = quantities[quantity];
   const marks = [0, 0.25, 0.5, 0.75, 1].map((share) => map.low + share * (map.high - map.low));

@@ -6,6 +6,7 @@ import { run } from "../run/run";
 import { simulation } from "../run/state";
 import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
 import { figures, isFinal, refusal, shownShapeOf, type ShapeOf } from "../shape/state";
+import { showsForecast } from "../forecast/state";
 import { step } from "./stage_state";
 import type { FoundShape } from "@wire/simulation_service_pb";
 
@@ -96,6 +97,7 @@ const titles: Record<ShapeOf, string> = {
 export function ShapeReadout() {
   const of = shownShapeOf.value;
   const found = figures.value;
+  if (showsForecast.value) return null; // its figures are of another time
   if (of === undefined || (found === undefined && refusal.value === "")) return null;
   return (
     <section class="shape-readout" aria-label="Shape of these volumes" tabIndex={0}>

@@ -2,6 +2,7 @@
 import { computed } from "@preact/signals";
 import { modelMeshes, plan, scanMesh } from "../plan/state";
 import { faceMesh, frame, meshes } from "../run/state";
+import { shownForecast } from "../forecast/state";
 import { shapeFrame, shownShapeOf } from "../shape/state";
 import { distanceMap, distances, goalView, targetMesh } from "../target/state";
 import { step } from "./stage_state";
@@ -24,7 +25,13 @@ export const shownMesh = computed(() => {
   return meshes.value?.get(faceMesh.value) ?? face;
 });
 export const shownFrame = computed(() =>
-  showsShape.value ? shapeFrame.value : step.value === "run" ? frame.value : undefined,
+  shownForecast.value
+    ? undefined
+    : showsShape.value
+      ? shapeFrame.value
+      : step.value === "run"
+        ? frame.value
+        : undefined,
 );
 export const showsFrame = computed(() => shownFrame.value !== undefined && shownMesh.value !== undefined);
 

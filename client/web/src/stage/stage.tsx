@@ -13,6 +13,8 @@ import { bindRulers } from "./rulers";
 import { SectionPanel } from "./section_panel";
 import { bindSection } from "./section_state";
 import { bindGuesses } from "../landmarks/state";
+import { bindForecast } from "./forecast_binding";
+import { ForecastBar, ForecastProbe } from "./forecast_tools";
 import { bindFace, bindFrame, bindMarkers, bindPatch } from "./stage_bindings";
 import { useCursor } from "./stage_cursor";
 import { onStageFocus, onStageKey } from "./stage_keys";
@@ -124,6 +126,7 @@ export function Stage() {
       effect(() => void (scene.dark = presenting.value && dark.value)),
       bindRulers(),
       bindSection(),
+      bindForecast(scene),
       bindBeside(),
       bindGuesses(),
     ];
@@ -176,10 +179,12 @@ export function Stage() {
       {quantity.value !== "none" && map.value && showsFrame.value && !shownDistances.value && (
         <ScalarBar map={map.value} quantity={quantity.value} />
       )}
+      <ForecastBar />
       {shownDistances.value && <ScalarBar map={shownDistances.value.map} quantity="distance" />}
       <KeyCursor />
       <Probe />
       <GoalProbe />
+      <ForecastProbe />
       <Labels />
       <ShapeReadout />
       <div class="stage-panels">

@@ -7,6 +7,9 @@ import { pointOf } from "../plan/landmarks";
 import { region } from "../plan/state";
 import { click, dab, tool } from "../plan/tools";
 import { distanceOf, type Point } from "../scene/surface_geometry";
+import { shownForecast } from "../forecast/state";
+import { forecastAt } from "./forecast_binding";
+import { forecastProbe } from "./forecast_tools";
 import { addPlace } from "./rulers";
 import { shownDistances, shownFrame } from "./shown";
 import { goalProbe, probe, shownScene, step } from "./stage_state";
@@ -28,7 +31,7 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
 
     const leave = (): void => {
       cancelAnimationFrame(due);
-      [probe.value, goalProbe.value] = [undefined, undefined];
+      [probe.value, goalProbe.value, forecastProbe.value] = [undefined, undefined, undefined];
     };
     const paint = (event: PointerEvent): void => {
       const hit = shownScene.value?.hitPatch(event.clientX, event.clientY);
@@ -82,7 +85,7 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
       if (
         event.buttons !== 0 ||
         tool.value.kind === "measure" ||
-        (shownFrame.value === undefined && shownDistances.value === undefined)
+        (shownFrame.value === undefined && shownDistances.value === undefined && shownForecast.value === undefined)
       )
         return;
       if (!(event.target as HTMLElement).closest(".view")) return leave();
@@ -96,6 +99,8 @@ export function useCursor(main: RefObject<HTMLDivElement>): void {
         probe.value = found && { ...found, ...place };
         const toGoalMm = shownDistances.value && scene?.distanceAt(clientX, clientY);
         goalProbe.value = toGoalMm === undefined ? undefined : { toGoalMm, ...place };
+        const mm = forecastAt(clientX, clientY);
+        forecastProbe.value = mm && { ...mm, ...place };
       });
     };
     const up = (event: PointerEvent): void => {

@@ -1,9 +1,12 @@
 // Back and forth through the frames that came.
 import { lookAt } from "../run/run";
 import { connection, frame, hasResult, lookedAt, rows, skipped, store, timeShown } from "../run/state";
+import { showsForecast } from "../forecast/state";
+import { MonthLine } from "./forecast_tools";
 import { rate } from "./stage_state";
 
 export function Timeline() {
+  if (showsForecast.value) return <MonthLine />;
   if (timeShown.value === undefined) return null;
   const end = Math.max(store.latest?.timeS ?? 0, rows.value.at(-1)?.timeS ?? 0);
   const now = timeShown.value;

@@ -15,6 +15,7 @@ import { shownDistances, shownMesh, showsFrame } from "./shown";
 import { compare, dark, presenting, quantity, showRulers, shownScene, step, type Compare } from "./stage_state";
 import { Segmented } from "../widgets/fields";
 import type { Quantity } from "../scene/colour_maps";
+import { ForecastTools } from "./forecast_tools";
 import { NearTools } from "./near_tools";
 
 /** In a narrow picture the buttons wait behind one. */
@@ -212,6 +213,7 @@ export function ViewTools() {
           onChange={(value) => (quantity.value = value)}
         />
       )}
+      <ForecastTools />
       {hasResult.value && step.value === "run" && <CompareTools />}
       <More />
     </div>

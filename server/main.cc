@@ -14,6 +14,7 @@
 #include "core/coupling/algebra_threads.h"
 #include "server/backend/abandoned_uploads.h"
 #include "server/backend/backend_metrics.h"
+#include "server/backend/fleet_attendant.h"
 #include "server/backend/parking.h"
 #include "server/backend/recovery_attendant.h"
 #include "server/backend/simulation_recovery.h"
@@ -31,6 +32,7 @@
 #include "server/sessions/identifiers.h"
 #include "server/store/backup.h"
 #include "server/store/data_directory.h"
+#include "server/store/ownership.h"
 #include "server/store/store_opening.h"
 #include "server/store/stray_files.h"
 #include "server/store/temporary_files.h"
@@ -73,6 +75,49 @@ absl::StatusOr<OpenedStore> open_store(const DataDirectory& data, const Options&
   });
   if (!done.ok()) return done;
   return opened;
+}
+
+/// The directory of a store, what is in it, and who else serves it.
+struct Ground {
+  std::optional<DataDirectory> data;
+  std::unique_ptr<Ownership> ownership;  ///< null: the store is this daemon's alone
+  OpenedStore opened;
+  std::vector<DaemonRecord> others;
+};
+
+/// Opens a store that may be shared: daemons do so one after the other.
+absl::Status open_shared(const Options& options, Ground& ground) {
+  auto data = DataDirectory::open_shared(options.data, options.own_name());
+  if (!data.ok()) return data.status();
+  ground.data.emplace(*std::move(data));
+  auto ownership = Ownership::open(options.store);
+  if (!ownership.ok()) return ownership.status();
+  ground.ownership = *std::move(ownership);
+  if (absl::Status begun = ground.ownership->begin_start(); !begun.ok()) return begun;
+  auto opened = open_store(*ground.data, options);
+  if (!opened.ok()) return opened.status();
+  ground.opened = *std::move(opened);
+  auto others = ground.ownership->join(*ground.data, program_version());
+  if (!others.ok()) return others.status();
+  ground.others = *std::move(others);
+  ground.opened.store->fence_by(*ground.ownership);
+  for (const DaemonRecord& other : ground.others) {
+    spdlog::info("{} serves the same store{}{}", other.name, other.address.empty() ? "" : " at ", other.address);
+    if (other.version != program_version()) {
+      spdlog::warn("{} is version {}, this is {}", other.name, other.version, program_version());
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status open_ground(const Options& options, Ground& ground) {
+  if (options.is_shared()) return open_shared(options, ground);
+  auto data = DataDirectory::open(options.data);
+  if (!data.ok()) return data.status();
+  ground.data.emplace(*std::move(data));
+  auto opened = open_store(*ground.data, options);
+  if (opened.ok()) ground.opened = *std::move(opened);
+  return opened.status();
 }
 
 /// The file is written beside and moved into place, so that a script never reads half a number.
@@ -121,7 +166,11 @@ DoorBounds door_bounds(const Options& options) {
 
 /// Opens the audit log; nullptr when none is asked for.
 absl::StatusOr<std::unique_ptr<AuditLog>> open_audit_log(const Options& options) {
-  const std::string path = options.security.audit_file_in(options.data);
+  std::string path = options.security.audit_file_in(options.data);
+  // Daemons that share a directory have a log each.
+  if (options.is_shared() && options.security.audit_file.empty() && !path.empty()) {
+    path = absl::StrCat(options.data, "/audit-", options.own_name(), ".jsonl");
+  }
   if (path.empty()) return nullptr;
   std::shared_ptr<const AnchorKey> key;
   if (!options.security.audit_key_file.empty()) {
@@ -160,8 +209,12 @@ absl::Status serve_until_signal(const Options& options, const std::string& store
   }
   const ServiceManager manager;
   manager.tell_ready("serving " + where);
+  const Ownership* const ownership = ownership_of(backend.store);
   const SelfCheck self_check(
-      std::chrono::duration<double>(options.self_check_s), [&server] { return server.check_reachable(); },
+      std::chrono::duration<double>(options.self_check_s),
+      [&server, ownership] {
+        return ownership == nullptr || ownership->is_held() ? server.check_reachable() : no_lease();
+      },
       [&server](bool reachable) { server.set_reachable(reachable); });
   const int signal = wait_for_signal(manager.watchdog_period(), [&backend, &manager, &self_check] {
     backend.check_alive();
@@ -174,18 +227,20 @@ absl::Status serve_until_signal(const Options& options, const std::string& store
 
 absl::Status serve(const Options& options) {
   std::optional<DrainGuard> guard;  // first: it outlasts all that must end
-  const auto data = DataDirectory::open(options.data);
-  if (!data.ok()) return data.status();
-  const auto opened = open_store(*data, options);
-  if (!opened.ok()) return opened.status();
-  if (!opened->remark.empty()) spdlog::warn("{}", opened->remark);
-  Store& store = *opened->store;
-  const std::string& store_name = opened->store->database().name();
-  auto files = ScanFiles::open(data->scans());
+  Ground ground;
+  if (auto opened = open_ground(options, ground); !opened.ok()) return opened;
+  if (!ground.opened.remark.empty()) spdlog::warn("{}", ground.opened.remark);
+  Store& store = *ground.opened.store;
+  const std::string& store_name = ground.opened.store->database().name();
+  auto files = ScanFiles::open(ground.data->scans());
   if (!files.ok()) return files.status();
-  auto checkpoints = CheckpointFiles::open(data->checkpoints());
+  auto checkpoints = CheckpointFiles::open(ground.data->checkpoints());
   if (!checkpoints.ok()) return checkpoints.status();
-  if (auto tidied = tidy_files(store, *files, *checkpoints, *data); !tidied.ok()) return tidied;
+  // What others are writing has no record yet either.
+  if (ground.others.empty()) {
+    if (auto tidied = tidy_files(store, *files, *checkpoints, *ground.data); !tidied.ok()) return tidied;
+  }
+  if (ground.ownership != nullptr) ground.ownership->end_start();
 
   const auto authenticator = Authenticator::open(options.security);
   if (!authenticator.ok()) return authenticator.status();
@@ -197,6 +252,8 @@ absl::Status serve(const Options& options) {
     spdlog::warn("there is no room for the reserve of {} MB: on a full disk nothing can be deleted",
                  options.space_reserve_mb);
   }
+  std::optional<FleetAttendant> fleet;  // first: to bring back may take longer than a lease lasts
+  if (ground.ownership != nullptr) fleet.emplace(backend, *ground.ownership);
   if (auto back = bring_back_simulations(backend); !back.ok()) return back;
   const ParkingAttendant parking(backend, std::chrono::duration<double>(options.park_after_s));
   const RecoveryAttendant recovery(backend);
@@ -205,12 +262,18 @@ absl::Status serve(const Options& options) {
       GrpcServer::start(options.listen, {options.security, **authenticator, audit->get(), options.reflection},
                         door_bounds(options), backend);
   if (!server.ok()) return server.status();
+  if (ground.ownership != nullptr) {
+    const std::string address = options.own_address((*server)->port());
+    if (auto told = ground.ownership->announce(address); !told.ok()) return told;
+    spdlog::info("this daemon is {}, called at {}", ground.ownership->name(), address);
+  }
   const auto metrics_server = serve_metrics(options, (*server)->door_figures(), backend);
   const absl::Status served =
       metrics_server.ok() ? serve_until_signal(options, store_name, backend, **server) : metrics_server.status();
   guard.emplace(options.drain_timeout_s);
   const bool drained =
       (*server)->drain(GrpcServer::Seconds(options.drain_delay_s), GrpcServer::Seconds(options.drain_timeout_s));
+  if (ground.ownership != nullptr) ground.ownership->leave();
   spdlog::info("stopped");
   if (!drained) std::_Exit(served.ok() ? 0 : 1);
   return served;

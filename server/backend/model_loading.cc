@@ -1,6 +1,7 @@
 #include "absl/strings/str_cat.h"
 #include "server/backend/backend.h"
 #include "server/backend/model_reading.h"
+#include "server/store/ownership.h"
 #include "server/wire/names.h"
 
 namespace lipofill::server {
@@ -30,8 +31,18 @@ absl::StatusOr<ModelCache::Model> rebuild(Backend& backend, const std::string& n
 
 }  // namespace
 
+// Another daemon may have deleted it, and made another of its name.
 absl::StatusOr<ModelCache::Model> Backend::load_model(const std::string& name) {
-  return models.get(name, [this, &name] { return rebuild(*this, name); });
+  const auto build = [this, &name] { return rebuild(*this, name); };
+  auto model = models.get(name, build);
+  if (!model.ok() || ownership_of(store) == nullptr) return model;
+  const auto ids = parse_model_name(name, "model");
+  if (!ids.ok()) return ids.status();
+  const auto record = store.get_model(ids->patient, ids->id);
+  if (record.ok() && record->content_hash == (*model)->content_hash) return model;
+  models.remove(name);
+  if (!record.ok()) return record.status();
+  return models.get(name, build);
 }
 
 }  // namespace lipofill::server

@@ -7,6 +7,7 @@
 #include "core/base/error_hints.h"
 #include "server/backend/simulation_recovery.h"
 #include "server/sessions/thread_name.h"
+#include "server/store/ownership.h"
 #include "server/store/record_names.h"
 #include "server/wire/names.h"
 
@@ -51,6 +52,12 @@ absl::Status no_session_for(Backend& backend, const char* what, const Simulation
                           absl::StrCat(cannot, " is not back since the daemon was started again: it waits for this: ",
                                        awaited->waiting_for, "; the daemon tries again in ", std::ceil(delay_s), " s")),
                       {"NOT_BACK_YET", std::max(delay_s, kLeastRetryDelayS)});
+  }
+  if (Ownership* const ownership = ownership_of(backend.store); ownership != nullptr) {
+    const auto owner = ownership->owner_of(record.id);
+    if (!owner.ok()) return owner.status();
+    const bool is_own = owner->has_value() && (*owner)->number == ownership->tenures()->daemon();
+    if (owner->has_value() && !is_own) return owned_elsewhere(record.id, **owner);
   }
   // Its record is there, and can be listed, a moment before its session is.
   return with_hints(absl::UnavailableError(absl::StrCat(cannot, " is being made, try again")),

@@ -7,6 +7,7 @@
 #include "core/base/units.h"
 #include "lipofill/v1/simulation_service.pb.h"
 #include "server/sessions/identifiers.h"
+#include "server/store/ownership.h"
 #include "server/store/record_names.h"
 #include "server/wire/frame_encoding.h"
 #include "server/wire/report_conversion.h"
@@ -191,13 +192,17 @@ void ResultKeeper::stepped(const SeriesEntry& entry) {
   metrics_.steps().count(step);
 }
 
+// Whoever is asked for it next takes it, also this daemon, in another epoch.
 absl::Status ResultKeeper::parked(const std::string& id, const SessionView& view) {
+  Ownership* const ownership = ownership_of(store_);
+  const auto epoch = ownership != nullptr ? ownership->tenures()->epoch_of(id) : std::nullopt;
   const absl::Status kept = store_.keep_summary(id, to_summary(view).SerializeAsString());
   if (!kept.ok()) return kept;
   if (!sessions_.remove_unless_held(id)) {
     store_.keep_summary(id, "").IgnoreError();
     return absl::AbortedError("the simulation is in use at this moment");
   }
+  if (epoch) ownership->give_back(id, *epoch);
   metrics_.simulations().count_parked();
   return kept;
 }

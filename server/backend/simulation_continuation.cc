@@ -11,6 +11,7 @@
 #include "server/sessions/draining.h"
 #include "server/sessions/identifiers.h"
 #include "server/sessions/replay.h"
+#include "server/store/ownership.h"
 #include "server/store/record_names.h"
 #include "spdlog/spdlog.h"
 
@@ -83,6 +84,10 @@ absl::StatusOr<std::shared_ptr<Session>> continue_simulation(Backend& backend, c
   const auto known = backend.keeper.was_kept(request);
   if (!known.ok()) return known.status();
   if (*known) return nullptr;
+  TakenForNow taken_for_now(backend.store, id);
+  if (Ownership* const ownership = ownership_of(backend.store); ownership != nullptr) {
+    if (absl::Status taken = ownership->take(id); !taken.ok()) return taken;
+  }
   auto reopened = reopen(backend, id, order, unwanted);
   if (!reopened.ok()) return reopened.status();
   simulation::Simulation& simulation = *reopened->simulation;
@@ -95,6 +100,7 @@ absl::StatusOr<std::shared_ptr<Session>> continue_simulation(Backend& backend, c
   const CommandRecord command{id, 0, CommandKind::kInject, step, order.message, now_us()};
   const auto kept = backend.keeper.keep_injection(command, *reopened->injection.spec.start, request);
   if (!kept.ok()) return kept.status();
+  taken_for_now.keep();
   simulation.inject_resolved(reopened->injection);
   SessionHistory history;
   history.state = SimulationState::kRunning;

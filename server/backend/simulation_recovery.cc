@@ -13,6 +13,7 @@
 #include "server/backend/simulation_ground.h"
 #include "server/sessions/draining.h"
 #include "server/sessions/identifiers.h"
+#include "server/store/ownership.h"
 #include "server/store/record_names.h"
 #include "server/store/row_sums.h"
 #include "spdlog/spdlog.h"
@@ -26,8 +27,12 @@ struct Revived {
   uint64_t bytes = 0;  ///< it takes in memory
 };
 
-/// Makes what a simulation goes on with, in a new epoch.
+/// Makes what a simulation goes on with, in a new epoch. It is this daemon's from here on, before
+/// its commands are read: nobody else adds one to them.
 absl::StatusOr<Revived> revive(Backend& backend, const SimulationRecord& record) {
+  if (Ownership* const ownership = ownership_of(backend.store); ownership != nullptr) {
+    if (absl::Status taken = ownership->take(record.id); !taken.ok()) return taken;
+  }
   const auto commands = backend.store.list_commands(record.id);
   if (!commands.ok()) return commands.status();
   auto ground = find_ground(backend, record, *commands);
@@ -74,8 +79,9 @@ void note_waiting(Backend& backend, const SimulationRecord& record, const std::s
 }
 
 /// A simulation whose plan or log is lost has failed; one that met a shortage, or for which a file
-/// is missing, waits.
+/// is missing, waits. One that another daemon owns is none of this one's.
 void note_failure(Backend& backend, const SimulationRecord& record, const absl::Status& why) {
+  if (is_owned_elsewhere(why)) return backend.awaited.forget(record.id);
   const bool is_lost = absl::IsDataLoss(why) || absl::IsNotFound(why) || absl::IsInvalidArgument(why);
   if (!is_lost) return note_waiting(backend, record, std::string(why.message()));
   const std::string reason =
@@ -124,10 +130,12 @@ void try_to_bring_back(Backend& backend, const std::string& id) {
 absl::StatusOr<std::shared_ptr<Session>> wake_simulation(Backend& backend, const SimulationRecord& record) {
   auto place = backend.sessions.reserve(record.tenant);
   if (!place.ok()) return place.status();
+  TakenForNow taken_for_now(backend.store, record.id);
   auto revived = revive(backend, record);
   if (!revived.ok()) return revived.status();
   if (auto room = place->claim(revived->bytes); !room.ok()) return room;
   if (auto cleared = backend.store.keep_summary(record.id, ""); !cleared.ok()) return cleared;
+  taken_for_now.keep();
   auto held = hold(revived->session);
   if (!backend.sessions.add(*std::move(place), revived->session)) return draining();
   held->go_on();

@@ -1,5 +1,6 @@
 #include "server/ops/options.h"
 
+#include <limits.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +9,7 @@
 #include <iostream>
 #include <thread>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "server/ops/listen_address.h"
 #include "server/ops/security_options.h"
@@ -179,6 +181,11 @@ uint64_t machine_memory_mb() {
   return static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(::sysconf(_SC_PAGE_SIZE)) / 1'000'000;
 }
 
+std::string host_name() {
+  char name[HOST_NAME_MAX + 1] = {};
+  return ::gethostname(name, sizeof name - 1) == 0 && name[0] != '\0' ? name : "localhost";
+}
+
 /// What is given is not repeated: it may hold a password.
 void check_store(const Options& options, FieldViolations& violations) {
   if (options.store.empty()) return;
@@ -196,6 +203,35 @@ Options::Options()
 
 std::string Options::database() const {
   return store.empty() ? absl::StrCat(data, "/", kDatabaseFile) : store;
+}
+
+const char* program_version() {
+  return LIPOFILL_VERSION;
+}
+
+std::string Options::own_name() const {
+  if (!name.empty()) return name;
+  const std::string& first = listen.front();
+  std::string own = absl::StrCat(host_name().substr(0, 40), "-", first.substr(first.rfind(':') + 1)).substr(0, 64);
+  std::replace_if(
+      own.begin(), own.end(),
+      [](char c) {
+        return !is_daemon_name({'x', c});
+      },
+      '-');
+  return own;
+}
+
+std::string Options::own_address(int port) const {
+  if (!advertise.empty()) return advertise;
+  for (const std::string& text : listen) {
+    const auto address = parse_listen_address(text);
+    if (!address.ok() || address->is_unix()) continue;
+    const bool is_any = address->host == "0.0.0.0" || address->host == "::" || address->host.empty();
+    const std::string host = is_any ? host_name() : address->host;
+    return absl::StrCat(absl::StrContains(host, ':') ? absl::StrCat("[", host, "]") : host, ":", port);
+  }
+  return listen.front();
 }
 
 std::vector<Setting> settings_of(Options& options) {
@@ -219,6 +255,14 @@ std::vector<Setting> settings_of(Options& options) {
        "Database of records, postgresql://user@host:port/database, PostgreSQL 15; the files stay in --data. Its "
        "password stands in the file of PGPASSFILE. Default: a file of SQLite in --data",
        &options.store},
+      {"name", "NAME",
+       "What this daemon is called among those that share the database of --store and --data; default: the name of the "
+       "machine and the port",
+       &options.name},
+      {"advertise", "ADDRESS",
+       "HOST:PORT or unix:PATH where those daemons, and clients that they send on, call this one; default: the first "
+       "address of --listen on TCP",
+       &options.advertise},
       {"workers", "N", "Threads that run simulations; default: the number of cores", &options.workers, 1, 256},
       {"max-simulations", "N",
        "Simulations that may be in memory without having ended; those that are parked do not count",
@@ -292,6 +336,15 @@ absl::Status check_options(const Options& options) {
   }
   if (options.data.empty()) violations.add("data", "is empty, must be a directory");
   check_store(options, violations);
+  if (!options.name.empty() && !is_daemon_name(options.name)) {
+    violations.add("name",
+                   absl::StrCat("is \"", options.name,
+                                "\", must be 1 to 64 letters, digits, '.', '_', ':' and '-', the first a letter "
+                                "or a digit"));
+  }
+  if (!options.advertise.empty() && !parse_listen_address(options.advertise).ok()) {
+    violations.add("advertise", absl::StrCat("is \"", options.advertise, "\", must be HOST:PORT or unix:PATH"));
+  }
   if (!options.metrics_listen.empty()) {
     const auto address = parse_listen_address(options.metrics_listen);
     if (!address.ok() || address->is_unix()) {

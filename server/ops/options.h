@@ -28,7 +28,9 @@ struct Options {
   std::string port_file;
   std::string metrics_listen;  ///< empty: no metrics over HTTP
   std::string data = "lipofill-data";
-  std::string store;  ///< address of a database of PostgreSQL; empty: a file of SQLite in `data`
+  std::string store;      ///< address of a database of PostgreSQL; empty: a file of SQLite in `data`
+  std::string name;       ///< of this daemon among those of the database; empty: own_name()
+  std::string advertise;  ///< where others call this daemon; empty: own_address()
   int workers = 1;
   int max_simulations = 64;
   int max_simulations_per_tenant = 64;
@@ -56,7 +58,16 @@ struct Options {
 
   /// Says where the database is, see open_database().
   std::string database() const;
+  /// True where the database may be shared with other daemons.
+  bool is_shared() const { return !store.empty(); }
+  /// What this daemon is called among those of its database.
+  std::string own_name() const;
+  /// Where the others call it, when the first address on TCP has this port.
+  std::string own_address(int port) const;
 };
+
+/// The version of this program.
+const char* program_version();
 
 /// Every setting there is. A new one is a member of Options and an entry here: the file, the
 /// environment, the command line, --help and --check follow.

@@ -44,7 +44,7 @@ void Session::receive(const SessionCommand& command) {
 
 absl::Status Session::check_fits(const SessionCommand& command) const {
   if (run_.is_parked()) return just_parked();
-  if (run_.is_suspended()) return draining();
+  if (run_.is_suspended()) return why_suspended_;
   if (command.fits(run_.state())) return absl::OkStatus();
   return absl::FailedPreconditionError(
       absl::StrCat("cannot ", command.what, ": simulations/", options_.id, " is ", state_name(run_.state())));
@@ -249,8 +249,9 @@ void Session::park(std::chrono::duration<double> idle) {
   });
 }
 
-void Session::suspend(Done done) {
-  mailbox_.post([this, done] {
+void Session::suspend(absl::Status why, Done done) {
+  mailbox_.post([this, why = std::move(why), done = std::move(done)] {
+    why_suspended_ = why;
     run_.suspend();
     mailbox_.carry_out_deferred();
     const absl::Status saved = run_.save();
@@ -275,6 +276,7 @@ void Session::watch(std::shared_ptr<Viewer> viewer) {
   idle_.begin_watching();
   mailbox_.post([this, viewer] {
     if (run_.is_parked()) return viewer->close(just_parked());
+    if (run_.is_suspended()) return viewer->close(why_suspended_);
     const absl::Status shown = guard_session(options_.id, [&] {
       live().watch(viewer);
       return absl::OkStatus();

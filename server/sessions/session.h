@@ -85,10 +85,10 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   /// Ends it without a result once `forget` has deleted what is kept of it.
   void abandon(std::function<absl::Status()> forget, Reply reply);
 
-  /// Suspends the session when the daemon ends: it keeps its state and takes no step and no command
-  /// any more.
+  /// Suspends the session when the daemon ends, or another takes it over: it keeps its state and
+  /// takes no step any more; commands are refused with `why`.
   using Done = std::function<void(absl::Status)>;
-  void suspend(Done done);
+  void suspend(absl::Status why, Done done);
   /// Time since anything but figures was asked of it; 0 while it runs, is watched, is held or
   /// catches up. Does not wait.
   Clock::duration idle_time() const;
@@ -148,6 +148,7 @@ class Session : public WorkerPool::Task, public std::enable_shared_from_this<Ses
   // These are for the one who acts, see Mailbox.
   SimulationRun run_;
   bool scheduled_ = false;  ///< the pool has it
+  absl::Status why_suspended_;
 };
 
 /// The session, which is not parked as long as this is there: for whoever is about to ask something

@@ -157,7 +157,7 @@ void SessionManager::suspend_all() {
     // State that could not be kept is in the log; the simulation then goes on from an earlier one.
     const auto done = std::make_shared<std::promise<void>>();
     answers.push_back(done->get_future());
-    session->suspend([done](const absl::Status&) { done->set_value(); });
+    session->suspend(draining(), [done](const absl::Status&) { done->set_value(); });
   }
   for (auto& answer : answers) answer.get();
 }

@@ -43,6 +43,8 @@ class PostgresDatabase : public Database {
   absl::StatusOr<int64_t> schema_version() override;
   bool is_shared() const override { return true; }
   const std::string& name() const override { return address_.name; }
+  /// True unless the connection was lost.
+  bool is_connected() const { return connection_ != nullptr; }
 
   /// From now on every change is noted with a number in the table last_changes, which is there.
   absl::Status note_changes();

@@ -8,6 +8,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/substitute.h"
+#include "server/store/owner_tables.h"
 #include "server/store/postgres_sql.h"
 #include "server/store/row_sums.h"
 #include "server/store/schema.h"
@@ -184,6 +185,18 @@ absl::Status make_or_check(PostgresDatabase& database) {
                    "?options=-csearch_path%3Dname"));
 }
 
+/// They are made where they are missing: the store may have been made before there were any.
+absl::Status make_owner_tables(PostgresDatabase& database) {
+  const auto n_there = read_number(database,
+                                   "SELECT count(*) FROM pg_class WHERE relname = 'simulation_owners' "
+                                   "AND relnamespace = current_schema()::regnamespace");
+  if (!n_there.ok() || *n_there > 0) return n_there.status();
+  Transaction transaction(database);
+  absl::Status made = transaction.status();
+  if (made.ok()) made = database.execute(kOwnerTables);
+  return made.ok() ? transaction.commit() : made;
+}
+
 }  // namespace
 
 absl::Status bring_postgres_up_to_date(PostgresDatabase& database) {
@@ -195,6 +208,7 @@ absl::Status bring_postgres_up_to_date(PostgresDatabase& database) {
     if (done.ok()) done = make_or_check(database);
     if (done.ok()) done = transaction.commit();
   }
+  if (done.ok()) done = make_owner_tables(database);
   done.Update(database.execute(kUnlock));
   return done.ok() ? database.note_changes() : done;
 }

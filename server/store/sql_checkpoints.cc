@@ -40,6 +40,7 @@ absl::StatusOr<CheckpointRecord> SqlStore::create_checkpoint(const CheckpointRec
                                                              const RequestKey& request) {
   return turns_.transact([&]() -> absl::StatusOr<CheckpointRecord> {
     if (const auto simulation = read_simulation(checkpoint.simulation); !simulation.ok()) return simulation.status();
+    if (absl::Status owned = fence_.check(checkpoint.simulation); !owned.ok()) return owned;
     absl::Status written = write_checkpoint(checkpoint);
     if (rows.has_value()) written.Update(write_rows(checkpoint.simulation, *rows));
     written.Update(write_request(request, checkpoint_name(checkpoint.simulation, checkpoint.id)));
@@ -97,6 +98,7 @@ absl::StatusOr<std::vector<CheckpointRecord>> SqlStore::list_checkpoints(const s
 
 absl::Status SqlStore::delete_checkpoint(const std::string& simulation, const std::string& id) {
   return turns_.transact([&]() -> absl::Status {
+    if (absl::Status owned = fence_.check(simulation, Unowned::kMayBeWritten); !owned.ok()) return owned;
     // What is damaged can go.
     const auto checkpoint = read_checkpoint(simulation, id);
     if (!checkpoint.ok() && !absl::IsDataLoss(checkpoint.status())) return checkpoint.status();
@@ -113,7 +115,8 @@ absl::Status SqlStore::delete_checkpoint(const std::string& simulation, const st
 }
 
 absl::Status SqlStore::prune_checkpoints(const std::string& simulation, int newest) {
-  return turns_.transact([&] {
+  return turns_.transact([&]() -> absl::Status {
+    if (absl::Status owned = fence_.check(simulation); !owned.ok()) return owned;
     Query remove(*database_,
                  "DELETE FROM checkpoints WHERE simulation = ?1 AND kind = ?2 AND " IS_WHOLE(
                      "checkpoints", CHECKPOINT_COLUMNS) " AND id NOT IN "

@@ -26,6 +26,7 @@ absl::Status forget_end(Database& database, const std::string& simulation) {
 absl::StatusOr<bool> SqlStore::append_command(const CommandRecord& command, const std::string& spec_message,
                                               const RequestKey& request) {
   const auto earlier = transact_once(request, simulation_name(command.simulation), [&]() -> absl::Status {
+    if (absl::Status owned = fence_.check(command.simulation); !owned.ok()) return owned;
     const auto simulation = read_simulation(command.simulation);
     if (!simulation.ok()) return simulation.status();
     absl::Status done = write_command(command);
@@ -90,6 +91,7 @@ absl::StatusOr<bool> SqlStore::restore_simulation(const CommandRecord& restore, 
 absl::Status SqlStore::write_restore(const CommandRecord& restore, SimulationState state,
                                      const std::string& spec_message) {
   const std::string& id = restore.simulation;
+  if (absl::Status owned = fence_.check(id); !owned.ok()) return owned;
   const auto checkpoint = read_checkpoint(id, restore.payload);
   if (!checkpoint.ok()) return checkpoint.status();
   if (!checkpoint->on_course) {

@@ -72,7 +72,8 @@ absl::StatusOr<SimulationRecord> SqlStore::create_simulation_from(const Simulati
 absl::StatusOr<SimulationRecord> SqlStore::make_simulation(const SimulationRecord& simulation,
                                                            const CheckpointRecord* origin, const RequestKey& request) {
   const auto earlier = transact_once(request, simulation_name(simulation.id), [&] {
-    const absl::Status written = write_simulation(simulation);
+    absl::Status written = write_simulation(simulation);
+    if (written.ok()) written = fence_.write_owner(simulation.id);
     return written.ok() && origin != nullptr ? write_checkpoint(*origin) : written;
   });
   if (!earlier.ok()) return earlier.status();
@@ -130,7 +131,8 @@ absl::StatusOr<std::vector<SimulationRecord>> SqlStore::list_simulations(const S
 }
 
 absl::Status SqlStore::end_simulation(const SimulationRecord& ended, const SimulationResult& result) {
-  return turns_.transact([&]() -> absl::Status {
+  const absl::Status kept = turns_.transact([&]() -> absl::Status {
+    if (absl::Status owned = fence_.check(ended.id); !owned.ok()) return owned;
     Query update(*database_, "UPDATE simulations SET state = ?, reason = ?, summary = ? WHERE id = ?");
     absl::Status done = update.bind(static_cast<int>(ended.state), ended.reason, ended.summary_message, ended.id).run();
     if (done.ok() && database_->changes() == 0) return no_simulation(ended.id);
@@ -138,20 +140,28 @@ absl::Status SqlStore::end_simulation(const SimulationRecord& ended, const Simul
     Query drop(*database_, "DELETE FROM checkpoints WHERE simulation = ? AND kind = ? AND " IS_WHOLE(
                                "checkpoints", CHECKPOINT_COLUMNS));
     done.Update(drop.bind(ended.id, static_cast<int>(CheckpointKind::kAutomatic)).run());
+    done.Update(fence_.erase_owner(ended.id));
     return done;
   });
+  if (kept.ok()) fence_.forget(ended.id);
+  return kept;
 }
 
 absl::Status SqlStore::set_simulation_state(const std::string& id, SimulationState state, const std::string& reason) {
-  return turns_.transact([&] {
+  const absl::Status kept = turns_.transact([&]() -> absl::Status {
+    if (absl::Status owned = fence_.check(id); !owned.ok()) return owned;
     Query update(*database_, "UPDATE simulations SET state = ?, reason = ? WHERE id = ?");
     const absl::Status done = update.bind(static_cast<int>(state), reason, id).run();
-    return done.ok() && database_->changes() == 0 ? no_simulation(id) : done;
+    if (done.ok() && database_->changes() == 0) return no_simulation(id);
+    return done.ok() && has_ended(state) ? fence_.erase_owner(id) : done;
   });
+  if (kept.ok() && has_ended(state)) fence_.forget(id);
+  return kept;
 }
 
 absl::Status SqlStore::keep_summary(const std::string& id, const std::string& summary_message) {
-  return turns_.transact([&] {
+  return turns_.transact([&]() -> absl::Status {
+    if (absl::Status owned = fence_.check(id); !owned.ok()) return owned;
     Query update(*database_, "UPDATE simulations SET summary = ? WHERE id = ?");
     const absl::Status done = update.bind(summary_message, id).run();
     return done.ok() && database_->changes() == 0 ? no_simulation(id) : done;
@@ -159,7 +169,10 @@ absl::Status SqlStore::keep_summary(const std::string& id, const std::string& su
 }
 
 absl::Status SqlStore::append_series(const std::string& id, const SeriesChunk& chunk) {
-  return turns_.transact([&] { return write_rows(id, chunk); });
+  return turns_.transact([&] {
+    const absl::Status owned = fence_.check(id);
+    return owned.ok() ? write_rows(id, chunk) : owned;
+  });
 }
 
 absl::Status SqlStore::write_rows(const std::string& simulation, const SeriesChunk& rows) {
@@ -168,7 +181,10 @@ absl::Status SqlStore::write_rows(const std::string& simulation, const SeriesChu
 }
 
 absl::Status SqlStore::cut_series(const std::string& id, uint64_t last_step) {
-  return turns_.transact([&] { return erase_rows(id, last_step); });
+  return turns_.transact([&] {
+    const absl::Status owned = fence_.check(id);
+    return owned.ok() ? erase_rows(id, last_step) : owned;
+  });
 }
 
 // A chunk ends at every checkpoint, so none lies on both sides of the step.
@@ -208,13 +224,16 @@ absl::StatusOr<SimulationResult> SqlStore::get_result(const std::string& id) {
 }
 
 absl::Status SqlStore::delete_simulation(const std::string& id) {
-  return turns_.transact([&]() -> absl::Status {
+  const absl::Status done = turns_.transact([&]() -> absl::Status {
+    if (absl::Status owned = fence_.check(id, Unowned::kMayBeWritten); !owned.ok()) return owned;
     Query remove(*database_, "DELETE FROM simulations WHERE id = ?");
     const absl::Status removed = remove.bind(id).run();
     if (removed.ok() && database_->changes() == 0) return no_simulation(id);
     owners_.erase(id);
     return removed.ok() ? forget_requests(simulation_name(id)) : removed;
   });
+  if (done.ok()) fence_.forget(id);
+  return done;
 }
 
 absl::StatusOr<std::vector<SimulationRecord>> SqlStore::list_unended_simulations() {
@@ -231,6 +250,7 @@ absl::StatusOr<std::vector<SimulationRecord>> SqlStore::list_unended_simulations
 
 absl::StatusOr<uint64_t> SqlStore::begin_epoch(const std::string& id, int64_t now_us) {
   return turns_.transact([&]() -> absl::StatusOr<uint64_t> {
+    if (absl::Status owned = fence_.check(id); !owned.ok()) return owned;
     Query query(*database_, "SELECT epoch, create_time_us FROM simulations WHERE id = ?");
     if (!query.bind(id).next()) return query.status().ok() ? no_simulation(id) : query.status();
     // The first epoch is the time at which the simulation was made.

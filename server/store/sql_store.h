@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/store/database.h"
+#include "server/store/owner_fence.h"
 #include "server/store/store.h"
 #include "server/store/transactor.h"
 
@@ -113,6 +114,11 @@ class SqlStore : public Store {
   /// The id that the store was made with, and how often it was opened to be served.
   absl::StatusOr<StoreIdentity> read_identity();
   absl::Status set_starts(uint64_t starts);
+  /// From now on the records of a simulation are written only while this daemon, which has joined
+  /// others, owns it, see OwnerFence. `ownership` outlives this.
+  void fence_by(Ownership& ownership) { fence_.raise(ownership); }
+  /// Null where this daemon alone has the database.
+  Ownership* ownership() const { return fence_.ownership(); }
 
  private:
   /// Carries out as one transaction what a request makes, or changes, once: `name` is remembered
@@ -156,6 +162,7 @@ class SqlStore : public Store {
 
   const std::unique_ptr<Database> database_;
   Transactor turns_{*database_};
+  OwnerFence fence_{*database_};
   /// The owners of simulations, which never change, as every call asks for one: to look into a
   /// record is to sum all of it, and plans may be long. Empty where another daemon may delete a
   /// simulation and make another of its name.

@@ -9,6 +9,7 @@ import { BodyRoom, mostConnections, mostMessageBytes, serverOptions } from "./li
 import { help, parseOptions, UsageError, type Options } from "./options";
 import { servePages } from "./pages";
 import { connectDaemon, passOn } from "./passthrough";
+import { Reports } from "./reports";
 
 /** Refuses, and closes the connection: what else it sends is not read. */
 function refuse(response: ServerResponse, { status, text }: Refusal): void {
@@ -17,6 +18,7 @@ function refuse(response: ServerResponse, { status, text }: Refusal): void {
 
 function serve(options: Options): void {
   const pages = servePages(options.page, options.samples);
+  const reports = new Reports(options.reports, options.daemon, options.daemonCa);
   const calls = connectNodeAdapter({
     routes: passOn(new CallerTransports(() => connectDaemon(options.daemon, options.daemonCa))),
     readMaxBytes: mostMessageBytes,
@@ -29,7 +31,7 @@ function serve(options: Options): void {
     if (refusal !== undefined) return refuse(response, refusal);
     if (!room.take(request, response))
       return refuse(response, { status: 503, text: "too much is being sent; try again" });
-    calls(request, response);
+    if (!reports.take(request, response)) calls(request, response);
   });
   server.maxConnections = mostConnections;
   server.on("error", (error: NodeJS.ErrnoException) => {
@@ -44,6 +46,7 @@ function serve(options: Options): void {
     console.log(`gateway: http://${host}:${port}/ for the daemon at ${options.daemon}`);
   });
   const end = (): void => {
+    reports.end();
     server.close(() => process.exit(0));
     server.closeAllConnections();
   };

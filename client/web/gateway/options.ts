@@ -18,6 +18,8 @@ export interface Options {
   /** folder with the sample faces and plans; empty: none */
   samples: string;
   portFile: string;
+  /** the program that makes reports; empty: none are made */
+  reports: string;
 }
 
 export class UsageError extends Error {}
@@ -36,6 +38,8 @@ export const help = `Serves Lipofill's page and passes its calls on to the daemo
   --daemon-ca FILE       the daemon encrypts; PEM of whoever signed its certificate
   --page DIR             the built page (default: "page" beside this program)
   --samples DIR          sample faces and plans that the page offers (default: client/examples, if it is there)
+  --reports PROGRAM      the program lipofill, which makes reports for the page with the caller's credentials, one at a
+                         time; "none": no reports (default: the one built beside, if it is there)
   --port-file FILE       writes the port here once it listens
   --help
 
@@ -62,6 +66,14 @@ function checkFolder(flag: string, folder: string, file: string): string {
   return path;
 }
 
+function reportProgram(given: string | undefined, built: string): string {
+  if (given === "none") return "";
+  if (given === undefined) return existsSync(built) ? built : "";
+  const program = resolve(given);
+  if (!existsSync(program)) throw new UsageError(`--reports is '${given}', which is not there`);
+  return program;
+}
+
 /** @throws UsageError naming the option, its value and what it must be */
 export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Options | "help" {
   const text = { type: "string" } as const;
@@ -78,6 +90,7 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
         page: text,
         samples: text,
         "port-file": { ...text, default: "" },
+        reports: text,
         help: { type: "boolean", default: false },
       },
     }));
@@ -104,7 +117,7 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
     port,
     hostNames: values["host-name"].map(checkHostName),
     daemon: values.daemon,
-    daemonCa: values["daemon-ca"],
+    daemonCa: values["daemon-ca"] && resolve(values["daemon-ca"]),
     page: checkFolder("--page", values.page ?? join(beside, "page"), "index.html"),
     samples:
       values.samples === undefined
@@ -113,5 +126,6 @@ export function parseOptions(args: string[], environment: NodeJS.ProcessEnv): Op
           : ""
         : checkFolder("--samples", values.samples, "plans"),
     portFile: values["port-file"],
+    reports: reportProgram(values.reports, join(beside, "../release/bin/lipofill")),
   };
 }

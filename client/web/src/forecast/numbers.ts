@@ -69,7 +69,7 @@ export function mostOf({ times }: Forecast, name: string, zone = ""): number {
   return Math.max(1e-6, ...ends);
 }
 
-/** "87 of 100", with less where hardly any: a share that is not nothing is not said to be nothing. */
+/** "87 of 100"; a share that is not nothing is not said to be nothing. */
 export function shareWords(share: number): string {
   if (share > 0 && share < 0.005) return "below 1 of 100";
   if (share < 1 && share > 0.995) return "above 99 of 100";

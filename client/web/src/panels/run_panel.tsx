@@ -17,6 +17,7 @@ import { FileButton, NumberField, Section, SelectField } from "../widgets/fields
 import { quantity } from "../stage/stage_state";
 import { AddedFat } from "./added_fat";
 import { ForecastSection } from "./forecast_section";
+import { ReportSection } from "./report_section";
 import { Exports, Recorded } from "./take_home";
 
 const more = signal({ zone: "", volumeMl: 0.5 as number | undefined, rateMlPerS: 1 as number | undefined });
@@ -204,6 +205,7 @@ export function RunPanel() {
       {state.value === Simulation_State.SETTLED && !recorded.value && <AddedFat />}
       {hasResult.value && !recorded.value && <Target />}
       {!recorded.value && <ForecastSection />}
+      {!recorded.value && <ReportSection />}
       <Exports />
       <Recorded />
     </>

@@ -1,7 +1,8 @@
 // How well a plan's result is known, in a real browser: a proposal that holds, a list compared with
 // its plan, and the forecast by months, on figures and on the skin.
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import type { Page } from "playwright-core";
+import type { Download, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
 import { wcagProblems } from "../system/axe";
 import { halfFace, halfFaceLandmarks, sunkFace } from "../system/faces";
@@ -35,6 +36,13 @@ async function middle(): Promise<Box> {
 async function still(name: string): Promise<Buffer> {
   await page.waitForTimeout(1500);
   return picture(page, name);
+}
+
+async function take(what: string): Promise<Buffer> {
+  const [download]: [Download, void] = await Promise.all([page.waitForEvent("download"), button(what).click()]);
+  const path = join(system.folder, download.suggestedFilename());
+  await download.saveAs(path);
+  return readFileSync(path);
 }
 
 beforeAll(async () => {
@@ -91,6 +99,27 @@ describe("an injection list", () => {
     expect(most).toBeGreaterThanOrEqual(p95);
     expect(most, "the list gives nearly the shape of the plan").toBeLessThan(0.5);
   }, 180_000);
+});
+
+describe("a report", () => {
+  it("is made by one button, and taken home as a page, printed, and as figures", async () => {
+    await goTo("Run");
+    await button("Make the report").click();
+    const group = page.getByRole("group", { name: "The report" });
+    await group.waitFor({ timeout: 280_000 });
+    expect(await wcagProblems(page)).toEqual([]);
+    const html = await take("HTML");
+    const pseudonym = (await page.locator(".plan-name b").textContent())!;
+    expect(html.toString()).toContain(pseudonym);
+    expect(html.toString(), "the goal of this page").toContain("target");
+    expect((await take("PDF")).subarray(0, 5).toString()).toBe("%PDF-");
+    expect((await take("Figures")).toString()).toMatch(/masseter/);
+    const printed = await page.context().newPage();
+    await printed.setContent(html.toString());
+    await printed.waitForTimeout(1000);
+    await picture(printed, "13-report");
+    await printed.close();
+  }, 320_000);
 });
 
 describe("a forecast", () => {

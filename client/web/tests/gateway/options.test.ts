@@ -22,6 +22,7 @@ describe("the gateway's options", () => {
     expect(() => parse("--daemon", "nowhere")).toThrow(/--daemon is 'nowhere'/);
     expect(() => parse("--daemon-ca", "/nowhere.pem")).toThrow(/--daemon-ca is '\/nowhere.pem'/);
     expect(() => parse("--host-name", "a.example:80")).toThrow(/--host-name is 'a.example:80', must be a name without/);
+    expect(() => parse("--reports", "/nowhere")).toThrow(/--reports is '\/nowhere', which is not there/);
     expect(() => parse("--port", "1")).toThrow(/--port/);
     expect(() => parseOptions(["--page", "/nowhere"], {})).toThrow(/--page is '\/nowhere'/);
   });
@@ -38,6 +39,7 @@ describe("the gateway's options", () => {
       "port-file",
       "host-name",
       "insecure-listen-anywhere",
+      "reports",
     ])
       expect(help).toContain(`--${option}`);
     expect(parse("--help")).toBe("help");

@@ -73,6 +73,8 @@ export class System {
         `127.0.0.1:${this.daemonPort}`,
         "--port-file",
         portFile,
+        "--reports",
+        existsSync(join(bin, "lipofill")) ? join(bin, "lipofill") : "none",
       ],
       { stdio: ["ignore", "ignore", "inherit"] },
     );

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -96,6 +97,18 @@ std::string_view ObjParser::join_continued(std::string_view line) {
   return joined_;
 }
 
+/// The colour behind a vertex's place: three numbers, or four with how opaque it is. One number
+/// alone is a weight.
+std::optional<std::array<double, 3>> take_colour(std::string_view line) {
+  std::array<double, 3> rgb{};
+  for (double& part : rgb) {
+    const auto value = parse_number(take_word(line));
+    if (!value) return std::nullopt;
+    part = *value;
+  }
+  return rgb;
+}
+
 absl::Status ObjParser::parse_vertex(std::string_view line, size_t line_number) {
   std::array<double, 3> xyz{};
   for (double& x : xyz) {
@@ -107,7 +120,9 @@ absl::Status ObjParser::parse_vertex(std::string_view line, size_t line_number) 
     }
     x = *value;
   }
-  return builder_.add_vertex(xyz, at_line(line_number));
+  if (const absl::Status added = builder_.add_vertex(xyz, at_line(line_number)); !added.ok()) return added;
+  if (const auto rgb = take_colour(line)) builder_.add_colour(*rgb);
+  return absl::OkStatus();
 }
 
 /// The vertex of a corner "v", "v/vt", "v//vn" or "v/vt/vn", counted from 0. Negative indices count

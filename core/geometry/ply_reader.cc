@@ -147,12 +147,33 @@ int find_property(const PlyElement& element, std::string_view name, bool is_list
   return -1;
 }
 
+/// The properties that are a vertex's red, green and blue; none where one of them is not there.
+std::optional<std::array<int, 3>> find_colour(const PlyElement& element) {
+  constexpr std::array<std::array<const char*, 3>, 3> kNames = {
+      {{"red", "green", "blue"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}, {"r", "g", "b"}}};
+  for (const auto& names : kNames) {
+    std::array<int, 3> found{};
+    for (size_t c = 0; c < 3; ++c) found[c] = find_property(element, names[c], false);
+    if (*std::min_element(found.begin(), found.end()) >= 0) return found;
+  }
+  return std::nullopt;
+}
+
+/// The brightest number of a colour of a type; 0 where the type does not say.
+double brightest_of(PlyType type) {
+  if (type == PlyType::kUint8) return UINT8_MAX;
+  if (type == PlyType::kUint16) return UINT16_MAX;
+  return 0.0;
+}
+
 absl::Status read_vertices(PlyBody& body, const PlyElement& element, SurfaceBuilder& builder) {
   const std::array<int, 3> xyz = {find_property(element, "x", false), find_property(element, "y", false),
                                   find_property(element, "z", false)};
   if (*std::min_element(xyz.begin(), xyz.end()) < 0) {
     return absl::InvalidArgumentError("the PLY header gives element 'vertex' no properties x, y and z");
   }
+  const auto rgb = find_colour(element);
+  if (rgb) builder.set_brightest(brightest_of(element.properties[static_cast<size_t>((*rgb)[0])].type));
   std::vector<double> scalars(element.properties.size());
   std::vector<double> unused;
   for (unsigned long long n = 0; n < element.count; ++n) {
@@ -161,6 +182,7 @@ absl::Status read_vertices(PlyBody& body, const PlyElement& element, SurfaceBuil
     const absl::Status added = builder.add_vertex({scalars[xyz[0]], scalars[xyz[1]], scalars[xyz[2]]},
                                                   absl::StrCat("vertex ", n, " (", body.where(), ")"));
     if (!added.ok()) return added;
+    if (rgb) builder.add_colour({scalars[(*rgb)[0]], scalars[(*rgb)[1]], scalars[(*rgb)[2]]});
   }
   return absl::OkStatus();
 }

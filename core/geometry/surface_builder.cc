@@ -13,6 +13,28 @@ namespace {
 constexpr size_t kMostPlacesKept = 1000;
 /// Cutting takes the square of a polygon's corners; all together may take some seconds.
 constexpr double kMostCuttingWork = 2e9;
+constexpr float kNoColour = std::numeric_limits<float>::quiet_NaN();
+constexpr Rgb8 kSkinColour = {222, 179, 153};
+
+bool has_colour(const std::array<float, 3>& rgb) {
+  return std::all_of(rgb.begin(), rgb.end(), [](float value) { return std::isfinite(value); });
+}
+
+/// The brightest number of colours that do not say it.
+double guess_brightest(const std::vector<std::array<float, 3>>& colours) {
+  for (const auto& rgb : colours) {
+    if (has_colour(rgb) && *std::max_element(rgb.begin(), rgb.end()) > 1.0F) return 255.0;
+  }
+  return 1.0;
+}
+
+Rgb8 to_rgb8(const std::array<float, 3>& rgb, double brightest) {
+  Rgb8 shown{};
+  for (size_t c = 0; c < 3; ++c) {
+    shown[c] = static_cast<uint8_t>(std::lround(255.0 * std::clamp(rgb[c] / brightest, 0.0, 1.0)));
+  }
+  return shown;
+}
 
 }  // namespace
 
@@ -31,6 +53,11 @@ absl::Status SurfaceBuilder::add_vertex(const std::array<double, 3>& xyz, const 
   }
   coordinates_.insert(coordinates_.end(), xyz.begin(), xyz.end());
   return absl::OkStatus();
+}
+
+void SurfaceBuilder::add_colour(const std::array<double, 3>& rgb) {
+  colours_.resize(static_cast<size_t>(n_vertices()), {kNoColour, kNoColour, kNoColour});
+  for (size_t c = 0; c < 3; ++c) colours_.back()[c] = static_cast<float>(rgb[c]);
 }
 
 absl::Status SurfaceBuilder::add_polygon(const std::vector<long long>& corners, const std::string& where) {
@@ -116,7 +143,24 @@ absl::Status SurfaceBuilder::cut_polygons(const SurfaceMesh& vertices) {
   return absl::OkStatus();
 }
 
-void SurfaceBuilder::leave_out_unused(const std::vector<bool>& used, SurfaceMesh& mesh) {
+void SurfaceBuilder::take_colours(const std::vector<bool>& used, ScannedSurface& mesh) {
+  if (colours_.empty()) return;
+  colours_.resize(used.size(), {kNoColour, kNoColour, kNoColour});
+  const double brightest = brightest_ > 0.0 ? brightest_ : guess_brightest(colours_);
+  mesh.colours.reserve(colours_.size());
+  size_t without = 0;
+  for (size_t v = 0; v < colours_.size(); ++v) {
+    const bool is_coloured = has_colour(colours_[v]);
+    if (used[v] && !is_coloured) ++without;
+    mesh.colours.push_back(is_coloured ? to_rgb8(colours_[v], brightest) : kSkinColour);
+  }
+  if (without > 0) {
+    add_remark(absl::StrCat(count_of(without, "vertex has", "vertices have"),
+                            " no colour where others have one, and got the colour of skin."));
+  }
+}
+
+void SurfaceBuilder::leave_out_unused(const std::vector<bool>& used, ScannedSurface& mesh) {
   const auto unused = static_cast<size_t>(std::count(used.begin(), used.end(), false));
   if (unused == 0) return;
   std::vector<int> renumbered(used.size(), -1);
@@ -124,9 +168,11 @@ void SurfaceBuilder::leave_out_unused(const std::vector<bool>& used, SurfaceMesh
   for (size_t v = 0; v < used.size(); ++v) {
     if (!used[v]) continue;
     mesh.points.col(kept) = mesh.points.col(static_cast<Eigen::Index>(v));
+    if (!mesh.colours.empty()) mesh.colours[static_cast<size_t>(kept)] = mesh.colours[v];
     renumbered[v] = kept++;
   }
   mesh.points.conservativeResize(3, kept);
+  if (!mesh.colours.empty()) mesh.colours.resize(static_cast<size_t>(kept));
   for (auto& triangle : mesh.triangles) {
     for (int& corner : triangle) corner = renumbered[static_cast<size_t>(corner)];
   }
@@ -153,6 +199,7 @@ absl::StatusOr<ScannedSurface> SurfaceBuilder::build() && {
   mesh.points = Eigen::Map<const Eigen::Matrix3Xd>(coordinates_.data(), 3, n_vertices());
   if (status = cut_polygons(mesh); !status.ok()) return status;
   mesh.triangles = std::move(triangles_);
+  take_colours(used, mesh);
   leave_out_unused(used, mesh);
   mesh.remarks = std::move(remarks_);
   return mesh;

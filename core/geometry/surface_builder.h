@@ -22,6 +22,13 @@ class SurfaceBuilder {
   /// A vertex. Its coordinates need to be finite only where a face uses it, which build() checks.
   absl::Status add_vertex(const std::array<double, 3>& xyz, const std::string& where);
 
+  /// The colour of the vertex that was added last: red, green and blue in the file's own numbers.
+  void add_colour(const std::array<double, 3>& rgb);
+
+  /// The number that is the brightest in the file. Where none is given it is 1, or 255 where a
+  /// colour is above 1.
+  void set_brightest(double value) { brightest_ = value; }
+
   /// A polygon, to be cut into triangles at the end. Corners may name vertices still to come;
   /// build() checks them. One of fewer than three corners is left out and counted.
   absl::Status add_polygon(const std::vector<long long>& corners, const std::string& where);
@@ -46,10 +53,13 @@ class SurfaceBuilder {
   absl::Status check_used_vertices(const std::vector<bool>& used) const;
   std::vector<bool> find_used() const;
   absl::Status cut_polygons(const SurfaceMesh& vertices);
-  void leave_out_unused(const std::vector<bool>& used, SurfaceMesh& mesh);
+  void take_colours(const std::vector<bool>& used, ScannedSurface& mesh);
+  void leave_out_unused(const std::vector<bool>& used, ScannedSurface& mesh);
 
   SurfaceLimits limits_;
   std::vector<double> coordinates_;
+  std::vector<std::array<float, 3>> colours_;  ///< of the first vertices; NaN where one has none
+  double brightest_ = 0.0;                     ///< 0: not given
   std::vector<std::array<int, 3>> triangles_;
   std::vector<Fan> fans_;
   /// The first vertices that are not finite, and where they are.

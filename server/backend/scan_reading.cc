@@ -47,8 +47,8 @@ absl::Status check_complete(Backend& backend, const std::string& patient, const 
                          absl::StatusCode::kFailedPrecondition);
 }
 
-absl::StatusOr<geometry::SurfaceMesh> read_scan_surface(Backend& backend, const std::string& patient,
-                                                        const std::string& scan) {
+absl::StatusOr<geometry::ScannedSurface> read_scan_surface(Backend& backend, const std::string& patient,
+                                                           const std::string& scan) {
   const auto record = backend.store.get_scan(patient, scan);
   if (!record.ok()) return record.status();
   if (!record->complete) {

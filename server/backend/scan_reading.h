@@ -18,7 +18,7 @@ absl::Status check_complete(Backend& backend, const std::string& patient, const 
                             const std::string& field);
 
 /// The surface of a scan in the store. FAILED_PRECONDITION while it is not complete.
-absl::StatusOr<geometry::SurfaceMesh> read_scan_surface(Backend& backend, const std::string& patient,
-                                                        const std::string& scan);
+absl::StatusOr<geometry::ScannedSurface> read_scan_surface(Backend& backend, const std::string& patient,
+                                                           const std::string& scan);
 
 }  // namespace lipofill::server

@@ -14,18 +14,18 @@ namespace {
 
 using Slices = absl::StatusOr<std::vector<v1::MeshSlice>>;
 
-std::vector<v1::MeshSlice> slice_all(std::vector<geometry::MeshTopology> meshes) {
+v1::MeshSlice gather(std::vector<geometry::MeshTopology> meshes) {
   Topology topology;
   topology.meshes = std::move(meshes);
   std::vector<std::string> all;
   for (const auto& mesh : topology.meshes) all.push_back(mesh.name);
-  return slice_meshes(to_whole_meshes(topology, all));
+  return to_whole_meshes(topology, all);
 }
 
 Slices slice_model(Backend& backend, const std::string& name) {
   const auto model = backend.load_model(name);
   if (!model.ok()) return model.status();
-  return slice_all(geometry::make_model_meshes((*model)->geometry));
+  return slice_meshes(gather(geometry::make_model_meshes((*model)->geometry)));
 }
 
 Slices slice_scan(Backend& backend, const std::string& name) {
@@ -33,7 +33,9 @@ Slices slice_scan(Backend& backend, const std::string& name) {
   if (!ids.ok()) return ids.status();
   const auto surface = read_scan_surface(backend, ids->patient, ids->id);
   if (!surface.ok()) return surface.status();
-  return slice_all({geometry::make_scan_mesh(*surface)});
+  v1::MeshSlice whole = gather({geometry::make_scan_mesh(*surface)});
+  if (!surface->colours.empty()) add_colours("scan", surface->colours, whole);
+  return slice_meshes(whole);
 }
 
 /// Makes the slices on a thread for long calls and sends them, or says why it cannot.

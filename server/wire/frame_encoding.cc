@@ -95,6 +95,11 @@ v1::MeshSlice to_whole_meshes(const Topology& topology, const std::vector<std::s
   return whole;
 }
 
+void add_colours(const std::string& mesh, const std::vector<geometry::Rgb8>& colours, v1::MeshSlice& whole) {
+  add_array(*whole.add_arrays(), mesh + ".colour", "", v1::POINT, v1::UINT8, {colours.size(), 3}, colours.data(),
+            colours.size() * sizeof(geometry::Rgb8));
+}
+
 v1::FrameSlice to_whole_frame(const Frame& frame, const Selection& selection) {
   v1::FrameSlice whole;
   whole.set_epoch(frame.epoch);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/field_violations.h"
+#include "core/geometry/surface_reader.h"
 #include "lipofill/v1/frame_service.pb.h"
 #include "server/sessions/frame.h"
 #include "server/sessions/selection.h"
@@ -16,6 +17,9 @@ constexpr size_t kMaxSliceBytes = size_t{1} << 20;
 
 /// Whole arrays, as they are kept for simulations that have ended.
 v1::MeshSlice to_whole_meshes(const Topology& topology, const std::vector<std::string>& meshes);
+/// Adds "<mesh>.colour": red, green and blue at each point, as screens show them. They are no part
+/// of the topology and leave its hash.
+void add_colours(const std::string& mesh, const std::vector<geometry::Rgb8>& colours, v1::MeshSlice& whole);
 v1::FrameSlice to_whole_frame(const Frame& frame, const Selection& selection);
 /// Leaves of meshes and frames that were kept only what is selected.
 void select_meshes(const std::vector<std::string>& meshes, google::protobuf::RepeatedPtrField<v1::ArraySlice>& arrays);

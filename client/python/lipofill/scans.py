@@ -166,7 +166,9 @@ class Scans:
         return self._channel.paged(self._stub.ListScans, pb.ListScansRequest(parent=patient), "scans")
 
     def download_mesh(self, name: str) -> Meshes:
-        """The surface of a complete scan as it was read: ``scan.points`` in mm, ``scan.cells``."""
+        """The surface of a complete scan as it was read: ``scan.points`` in mm, ``scan.cells``, and
+        where its vertices have colours ``scan.colour``, red, green and blue from 0 to 255.
+        """
         request = pb.DownloadScanMeshRequest(name=name)
         stream = self._stub.DownloadScanMesh(
             request, timeout=self._channel.timeout_s, metadata=self._channel.metadata()

@@ -53,6 +53,24 @@ TEST_F(UploadTest, GivesTheSurfaceBackInMillimetres) {
   EXPECT_EQ(rows, (std::map<std::string, uint64_t>{{"scan.points", 3600u}, {"scan.cells", 2u * 59 * 59}}));
 }
 
+TEST_F(UploadTest, GivesTheColoursThatAScanHas) {
+  const std::string bytes = "v 0 0 0 1 0 0\nv 100 0 0 0 1 0\nv 0 100 0 0 0 1\nf 1 2 3\n";
+  v1::Scan scan;
+  ASSERT_TRUE(upload("patients/anna", v1::OBJ, bytes, scan).ok());
+  restart();
+  Context context;
+  v1::DownloadScanMeshRequest request;
+  request.set_name(scan.name());
+  auto stream = patients_->DownloadScanMesh(&context, request);
+  v1::MeshSlice slice;
+  std::map<std::string, std::string> data;
+  while (stream->Read(&slice)) {
+    for (const v1::ArraySlice& array : slice.arrays()) data[array.name()] += array.data();
+  }
+  ASSERT_TRUE(stream->Finish().ok());
+  EXPECT_EQ(data["scan.colour"], std::string("\xFF\0\0\0\xFF\0\0\0\xFF", 9));
+}
+
 TEST_F(UploadTest, GivesNoSurfaceOfAScanThatIsNotComplete) {
   const v1::Scan scan = create_scan("patients/anna", v1::OBJ, sheet_obj(60));
   Context context;

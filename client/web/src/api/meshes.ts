@@ -13,6 +13,8 @@ export interface Mesh {
   cells: Uint32Array;
   /** of a cell: 3, 4 or 8 */
   corners: number;
+  /** red, green and blue of a scan's points, as it was taken (3 n); absent: it has none */
+  colours?: Uint8Array;
 }
 
 /** As many numbers as a mesh of some points needs for other points near them. */
@@ -43,7 +45,10 @@ export function meshesOf(arrays: Map<string, WireArray>): Map<string, Mesh> {
     };
     const n = mesh.points.length / 3;
     if (mesh.cells.some((index) => index >= n)) throw new Error(`the mesh ${name} has a cell with a point it has not`);
-    meshes.set(name, mesh);
+    const colours = arrays.get(`${name}.colour`);
+    if (colours !== undefined && colours.shape[0] !== n)
+      throw new Error(`the mesh ${name} has ${colours.shape[0]} colours for ${n} points`);
+    meshes.set(name, colours === undefined ? mesh : { ...mesh, colours: view(colours) as Uint8Array });
   }
   return meshes;
 }

@@ -63,12 +63,25 @@ export function valuesOf(
   return quantity === "distance" ? distance : quantity === "displacement" ? numbers.moved : numbers[quantity];
 }
 
+/** Gives a vertex the colour of the scan, or that of skin. */
+function paintGround(colours: Uint8Array, at: number, own: Uint8Array | undefined): void {
+  for (let c = 0; c < 3; ++c) colours[at + c] = own === undefined ? skinColour[c] : own[at + c];
+}
+
+/** Gives a surface the colours of the scan, where there are as many of them, or that of skin. */
+export function colourPlain(surface: Coloured, own: Uint8Array | undefined): void {
+  for (let at = 0; at < surface.colours.length; at += 3) paintGround(surface.colours, at, own);
+  surface.recolour();
+}
+
+/** @param own  colours of the scan, on which those of the quantity lie */
 export function colourFace(
   surface: Coloured,
   quantity: Quantity | "none",
   numbers: FaceNumbers,
   distance: Float32Array | undefined,
   map: ColourMap,
+  own?: Uint8Array,
 ): void {
   const values = quantity === "none" ? undefined : valuesOf(quantity, numbers, distance);
   const { colours } = surface;
@@ -81,21 +94,22 @@ export function colourFace(
         : quantity === "distance" || fade[quantity as Quantity] === 0
           ? 1
           : Math.min(1, Math.abs(value) / fade[quantity as Quantity]);
-    if (share === 0) {
-      colours.set(skinColour, at);
-      continue;
-    }
+    paintGround(colours, at, own);
+    if (share === 0) continue;
+    const [red, green, blue] = [colours[at], colours[at + 1], colours[at + 2]];
     paint(map, value, colours, at);
-    if (share < 1)
-      for (let c = 0; c < 3; ++c) colours[at + c] = skinColour[c] + share * (colours[at + c] - skinColour[c]);
+    if (share === 1) continue;
+    colours[at] = red + share * (colours[at] - red);
+    colours[at + 1] = green + share * (colours[at + 1] - green);
+    colours[at + 2] = blue + share * (colours[at + 2] - blue);
   }
   surface.recolour();
 }
 
-/** Colours a surface by values, a vertex; skin where one is not a number. */
-export function colourBy(surface: Coloured, values: Float32Array, map: ColourMap): void {
+/** Colours a surface by values, a vertex; as the scan is, or skin, where one is not a number. */
+export function colourBy(surface: Coloured, values: Float32Array, map: ColourMap, own?: Uint8Array): void {
   for (let k = 0; k < surface.count; ++k) {
-    if (Number.isNaN(values[k])) surface.colours.set(skinColour, 3 * k);
+    if (Number.isNaN(values[k])) paintGround(surface.colours, 3 * k, own);
     else paint(map, values[k], surface.colours, 3 * k);
   }
   surface.recolour();

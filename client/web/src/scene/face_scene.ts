@@ -3,11 +3,20 @@
 import type { Coordinates, Mesh } from "../api/meshes";
 import type { Frame } from "../api/watch";
 import type { ColourMap, Quantity, Rgb } from "./colour_maps";
-import { skinColour } from "./colour_maps";
-import { colourBy, colourFace, FrameReader, largestOf, RunningMap, valuesOf, type FaceNumbers } from "./face_colours";
+import {
+  colourBy,
+  colourFace,
+  colourPlain,
+  FrameReader,
+  largestOf,
+  RunningMap,
+  valuesOf,
+  type FaceNumbers,
+} from "./face_colours";
 import { makeLayers } from "./layers";
 import { Markers } from "./markers";
 import { MovingSurface } from "./moving_surface";
+import { SecondPicture } from "./second_picture";
 import { Surface } from "./surface";
 import { castRay, valueAt, type Hit, type Point } from "./surface_geometry";
 import { Viewport } from "./viewport";
@@ -24,9 +33,8 @@ export interface Probe {
 export class FaceScene {
   readonly viewport: Viewport;
   readonly markers: Markers;
-  private before: { viewport: Viewport; surface: Surface | undefined } | undefined;
+  private second: SecondPicture | undefined;
   private other: { mesh: Mesh; frame: Frame } | undefined;
-  private readonly otherReader = new FrameReader();
   private face: MovingSurface | undefined;
   private faceMesh: Mesh | undefined;
   private patch: Surface | undefined;
@@ -38,6 +46,7 @@ export class FaceScene {
   private numbers: FaceNumbers | undefined;
   private distance: Float32Array | undefined;
   private isDark = false;
+  private own: Uint8Array | undefined;
   private shown: Quantity | "none" = "none";
   /** told when the colour map is another one */
   onMap: (map: ColourMap) => void = () => undefined;
@@ -69,7 +78,7 @@ export class FaceScene {
     this.running.forget();
     this.face = mesh && new MovingSurface(mesh, this.viewport);
     if (this.face) this.face.coarse = this.shownDetail < 1;
-    if (this.before) this.fillBefore();
+    this.fillSecond();
     this.viewport.request();
   }
 
@@ -137,19 +146,23 @@ export class FaceScene {
     if (frame === undefined) {
       this.numbers = undefined;
       this.face.move();
-      this.face.fill(skinColour);
-      this.face.recolour();
+      colourPlain(this.face, this.ownOf(this.face));
     } else {
       this.numbers = this.reader.read(frame, this.faceMesh.name, this.face.count);
       this.face.move(this.numbers.displacement);
       const values = quantity === "none" ? undefined : valuesOf(quantity, this.numbers, this.distance);
       if (
         quantity !== "none" &&
-        this.running.fit(quantity, Math.max(values === undefined ? 1 : largestOf(values), this.otherLargest(quantity)))
+        this.running.fit(
+          quantity,
+          Math.max(values === undefined ? 1 : largestOf(values), this.second?.largest(quantity) ?? 0),
+        )
       )
         this.onMap(this.running.map);
-      colourFace(this.face, values === undefined ? "none" : quantity, this.numbers, this.distance, this.running.map);
-      this.colourOther(quantity);
+      const shown = values === undefined ? "none" : quantity;
+      colourFace(this.face, shown, this.numbers, this.distance, this.running.map, this.ownOf(this.face));
+      this.shown = quantity;
+      this.second?.colour(quantity, this.running.map);
     }
     this.viewport.request();
   }
@@ -160,22 +173,31 @@ export class FaceScene {
     this.numbers = undefined;
     this.distance = values;
     this.face.move();
-    colourBy(this.face, values, map);
+    colourBy(this.face, values, map, this.ownOf(this.face));
     this.viewport.request();
   }
 
   /** The signed distance under a place on the screen [mm], where distances are shown. */
   distanceAt(clientX: number, clientY: number): number | undefined {
     const hit = this.distance && this.hit(clientX, clientY);
-    if (!hit || !this.face) return undefined;
-    const value = valueAt(this.distance!, this.face.triangles, hit);
+    const value = hit && this.face ? valueAt(this.distance!, this.face.triangles, hit) : NaN;
     return Number.isNaN(value) ? undefined : value;
+  }
+
+  /** The colours of the scan's vertices (3 n); undefined: the face has that of skin. */
+  set ownColours(colours: Uint8Array | undefined) {
+    const isOther = colours !== this.own;
+    this.own = colours;
+    if (isOther) this.fillSecond();
+  }
+  private ownOf({ colours }: { colours: Uint8Array }): Uint8Array | undefined {
+    return this.own?.length === colours.length ? this.own : undefined;
   }
 
   set dark(wanted: boolean) {
     this.isDark = wanted;
     this.viewport.dark = wanted;
-    if (this.before) this.before.viewport.dark = wanted;
+    if (this.second) this.second.viewport.dark = wanted;
   }
 
   /** Less than 1 where a machine is too slow: fewer pixels, and coarser what does not move. */
@@ -189,7 +211,6 @@ export class FaceScene {
   get lift(): number {
     return this.numbers === undefined ? 0 : largestOf(this.numbers.moved);
   }
-
   liftView(axes: Axes): View | undefined {
     if (!this.face || !this.numbers) return undefined;
     return liftView(this.face.points, this.face.normals, this.numbers.moved, axes);
@@ -230,58 +251,22 @@ export class FaceScene {
 
   /** A second picture, of the face before, turned as the first. */
   compare(container: HTMLElement | undefined): void {
-    this.before?.viewport.dispose();
-    this.before?.surface?.dispose();
-    this.before = undefined;
-    this.viewport.onCamera = () => undefined;
-    if (container === undefined) return;
-    const viewport = new Viewport(container);
-    this.before = { viewport, surface: undefined };
-    this.viewport.onCamera = (pose) => (viewport.pose = pose);
-    viewport.onCamera = (pose) => (this.viewport.pose = pose);
-    viewport.onTurned = (pose) => this.viewport.onTurned(pose);
-    viewport.pose = this.viewport.pose;
-    viewport.dark = this.isDark;
-    this.fillBefore();
-  }
-
-  private fillBefore(): void {
-    const before = this.before!;
-    if (before.surface) {
-      before.viewport.remove(before.surface.actor);
-      before.surface.dispose();
-    }
-    const mesh = this.other?.mesh ?? this.faceMesh;
-    before.surface = mesh && new Surface(mesh);
-    if (before.surface) before.viewport.add(before.surface.actor);
-    this.colourOther(this.shown);
-    before.viewport.request();
+    this.second?.dispose();
+    this.second = container && new SecondPicture(container, this.viewport);
+    if (this.second === undefined) return;
+    this.second.viewport.dark = this.isDark;
+    this.fillSecond();
   }
 
   /** In the second picture: another result, or without one the face before. */
   setOther(other: { mesh: Mesh; frame: Frame } | undefined): void {
     this.other = other;
-    if (this.before) this.fillBefore();
+    this.fillSecond();
   }
 
-  private otherLargest(quantity: Quantity): number {
-    if (!this.before || !this.other || quantity === "distance") return 0;
-    const { mesh, frame } = this.other;
-    const numbers = this.otherReader.read(frame, mesh.name, mesh.points.length / 3);
-    return largestOf(valuesOf(quantity, numbers, undefined)!);
-  }
-
-  /** The same colour means the same in both pictures. */
-  private colourOther(quantity: Quantity | "none"): void {
-    this.shown = quantity;
-    const surface = this.before?.surface;
-    if (!this.other || !surface) return;
-    const { mesh, frame } = this.other;
-    const numbers = this.otherReader.read(frame, mesh.name, surface.count);
-    const of = quantity === "distance" ? "none" : quantity;
-    surface.move(numbers.displacement);
-    colourFace(surface, of, numbers, undefined, this.running.map);
-    this.before!.viewport.request();
+  private fillSecond(): void {
+    this.second?.show(this.other?.mesh ?? this.faceMesh, this.other?.frame, this.own);
+    this.second?.colour(this.shown, this.running.map);
   }
 
   dispose(): void {

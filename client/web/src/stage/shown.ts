@@ -5,7 +5,7 @@ import { faceMesh, frame, meshes } from "../run/state";
 import { shownForecast } from "../forecast/state";
 import { shapeFrame, shownShapeOf } from "../shape/state";
 import { distanceMap, distances, goalView, targetMesh } from "../target/state";
-import { step } from "./stage_state";
+import { ownColours, step } from "./stage_state";
 
 const planFace = computed(() =>
   plan.value.model?.geometry.case === "square" ? modelMeshes.value?.get("skin") : undefined,
@@ -24,6 +24,14 @@ export const shownMesh = computed(() => {
   if (step.value !== "run" || showsPlanShape.value) return planFace.value ?? face;
   return meshes.value?.get(faceMesh.value) ?? face;
 });
+/** Colours as they were scanned of what is shown: a run's face has them where it is the scan. */
+export const scanColours = computed(() => {
+  const [mesh, of] = [shownMesh.value, scanMesh.value];
+  if (mesh?.colours !== undefined) return mesh.colours;
+  const isScan = mesh !== undefined && mesh.points.length === of?.points.length;
+  return isScan && mesh.points.every((value, k) => value === of.points[k]) ? of.colours : undefined;
+});
+export const faceColours = computed(() => (ownColours.value ? scanColours.value : undefined));
 export const shownFrame = computed(() =>
   shownForecast.value
     ? undefined

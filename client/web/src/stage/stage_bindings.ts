@@ -15,7 +15,7 @@ import type { Point } from "../scene/surface_geometry";
 import { layerShown, showLayers } from "../panels/tissue_panel";
 import { delivery, deliveryIsOld } from "../target/state";
 import { moved, openGuesses } from "../landmarks/state";
-import { shownDistances, shownFrame, shownMesh, showsPlanShape } from "./shown";
+import { faceColours, shownDistances, shownFrame, shownMesh, showsPlanShape } from "./shown";
 import { rulerMarks } from "./rulers";
 import { section } from "./section_state";
 import { compare, quantity, step } from "./stage_state";
@@ -196,6 +196,7 @@ export function bindFrame(scene: FaceScene): End {
   let shape: unknown;
   const show = (): void => {
     due = 0;
+    scene.ownColours = faceColours.value;
     const toGoal = shownDistances.value;
     if (toGoal) {
       scene.showDistances(toGoal.values, toGoal.map);
@@ -222,6 +223,7 @@ export function bindFrame(scene: FaceScene): End {
   });
   const end = effect(() => {
     void [beside.value, compare.value, shownFrame.value, quantity.value, shownMesh.value, shownDistances.value];
+    void faceColours.value;
     if (shownDistances.value === undefined) scene.forgetDistance();
     if (distance.value) scene.setDistance(distance.value.vertices, distance.value.distanceMm);
     if (due === 0) due = requestAnimationFrame(show);

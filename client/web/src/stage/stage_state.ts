@@ -14,6 +14,8 @@ export const compare = signal<Compare>("after");
 export const presenting = signal(false);
 /** dark around the face, for a dim room */
 export const dark = signal(false);
+/** the face has the colours that the scan has, where it has some */
+export const ownColours = signal(true);
 export const showRulers = signal(false);
 /** names of landmarks on the face */
 export const showLabels = signal(true);

@@ -30,7 +30,9 @@ export function Timeline() {
       </button>
       {frame.peek()?.preview && <span class="tag-inline">Preview</span>}
       <span class="quiet rate" title={`${skipped.peek()} frames were left out`}>
-        {connection.value === "live" ? `${rate.value.toFixed(0)} pictures/s` : `${store.frames.length} frames`}
+        {connection.value === "live"
+          ? `${rate.value.toFixed(0)} pictures/s`
+          : `${store.frames.length} ${store.frames.length === 1 ? "frame" : "frames"}`}
       </span>
     </div>
   );

@@ -11,8 +11,18 @@ import type { Point } from "../scene/surface_geometry";
 import { contralateral, faceView, middleOf, regionView, type StandardView } from "../scene/views";
 import { lookAs, lookFrom, showFrom } from "./camera";
 import { canCut, showSection } from "./section_state";
-import { shownDistances, shownMesh, showsFrame } from "./shown";
-import { compare, dark, presenting, quantity, showRulers, shownScene, step, type Compare } from "./stage_state";
+import { scanColours, shownDistances, shownMesh, showsFrame } from "./shown";
+import {
+  compare,
+  dark,
+  ownColours,
+  presenting,
+  quantity,
+  showRulers,
+  shownScene,
+  step,
+  type Compare,
+} from "./stage_state";
 import { Segmented } from "../widgets/fields";
 import type { Quantity } from "../scene/colour_maps";
 import { ForecastTools } from "./forecast_tools";
@@ -132,6 +142,17 @@ function More() {
           onClick={() => (showSection.value = !showSection.value)}
         >
           Section
+        </button>
+      )}
+      {scanColours.value && (
+        <button
+          type="button"
+          class="button small"
+          aria-pressed={ownColours.value}
+          title="The face in the colours it was scanned in"
+          onClick={() => (ownColours.value = !ownColours.value)}
+        >
+          Scanned colours
         </button>
       )}
       <button

@@ -105,6 +105,17 @@ describe("meshes", () => {
     expect(hit.point[2] - far[2]).toBeCloseTo(0.025, 6);
     expect(surfaceObj(face.points, mesh.cells, 4)).toContain("v 500000000.2500 -299999999.7500 100000.0625");
   });
+  it("of a scan have its colours, and as many as they have points", () => {
+    const cells = { ...wire(Uint32Array.from([0, 1, 2]), ArrayType.UINT32, [1, 3]), name: "skin.cells" };
+    const colourOf = (n: number): Map<string, WireArray> => {
+      const bytes = Uint8Array.from({ length: 3 * n }, (_, k) => 10 * k);
+      const colour = { ...points, name: "skin.colour", type: ArrayType.UINT8, shape: [n, 3], bytes };
+      return new Map([points, cells, colour].map((array) => [array.name, array]));
+    };
+    const count = points.shape[0];
+    expect(meshesOf(colourOf(count)).get("skin")!.colours![4]).toBe(40);
+    expect(() => meshesOf(colourOf(count + 1))).toThrow(/colours for/);
+  });
   it("with a cell beyond their points are refused", () => {
     const cells = { ...wire(Uint32Array.from([0, 1, 4]), ArrayType.UINT32, [1, 3]), name: "skin.cells" };
     expect(() =>

@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "client/cli/result_files.h"
 #include "client/cli/run.h"
+#include "client/cli/scanned_colours.h"
 #include "client/cli/simulation_calls.h"
 #include "client/cpp/result_text.h"
 #include "lipofill/v1/simulation_service.grpc.pb.h"
@@ -39,6 +40,7 @@ v1::WatchRequest Run::watch_request() const {
 absl::Status Run::take_frames(const v1::WatchRequest& request, const std::function<void()>& on_watching) {
   WatchHandlers handlers;
   handlers.on_meshes = [this, &on_watching](Meshes meshes) {
+    add_scanned_colours(ground_.connection(), simulation_, &meshes.arrays);
     folder_.set_meshes(std::move(meshes.arrays));
     on_watching();
     return absl::OkStatus();

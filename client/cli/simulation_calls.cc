@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "client/cli/listing.h"
+#include "client/cli/scanned_colours.h"
 #include "client/cpp/result_text.h"
 #include "lipofill/v1/patient_service.grpc.pb.h"
 #include "lipofill/v1/simulation_service.grpc.pb.h"
@@ -72,6 +73,7 @@ absl::StatusOr<FinalState> final_state(const Connection& connection, const v1::S
   if (state.meshes.arrays.empty() || state.frame.fields.empty()) {
     return absl::NotFoundError(absl::StrCat("the daemon keeps no final frame of ", simulation.name()));
   }
+  add_scanned_colours(connection, simulation, &state.meshes.arrays);
   return state;
 }
 

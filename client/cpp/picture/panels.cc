@@ -9,6 +9,7 @@
 #include <vtkLight.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
+#include <vtkPointData.h>
 #include <vtkPoints.h>
 #include <vtkPolyDataMapper.h>
 #include <vtkPolyDataMapper2D.h>
@@ -24,6 +25,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "client/cpp/io/vtk_messages.h"
+#include "client/cpp/picture/surface.h"
 
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
 VTK_MODULE_INIT(vtkRenderingFreeType)
@@ -63,8 +65,13 @@ void set_lights(vtkRenderer* renderer) {
 
 void set_paint(const Paint& paint, vtkPolyDataMapper* mapper, vtkProperty* property) {
   const bool is_skin = paint.kind == Paint::Kind::kPlain;
-  mapper->SetScalarVisibility(!is_skin);
-  if (paint.kind == Paint::Kind::kPointField) {
+  const bool is_scanned = is_skin && mapper->GetInput()->GetPointData()->HasArray(kScannedColour) != 0;
+  mapper->SetScalarVisibility(!is_skin || is_scanned);
+  if (is_scanned) {
+    mapper->SetScalarModeToUsePointFieldData();
+    mapper->SelectColorArray(kScannedColour);
+    mapper->SetColorModeToDirectScalars();
+  } else if (paint.kind == Paint::Kind::kPointField) {
     mapper->SetScalarModeToUsePointFieldData();
     mapper->SelectColorArray(paint.field);
     mapper->SetLookupTable(paint.colours);

@@ -26,7 +26,7 @@ struct Area {
 /// The way a surface is painted.
 struct Paint {
   enum class Kind { kPlain, kPointField, kCellColours };
-  Kind kind = Kind::kPlain;                     ///< kPlain has the colour of skin
+  Kind kind = Kind::kPlain;                     ///< kPlain has the colours that were scanned, or that of skin
   const char* field = nullptr;                  ///< kPointField shows it
   vtkColorTransferFunction* colours = nullptr;  ///< kPointField shows it
 };

@@ -17,6 +17,8 @@ inline constexpr char kDisplacement[] = "displacement_mm";
 inline constexpr char kDisplacementLength[] = "displacement_length_mm";
 inline constexpr char kPressure[] = "pressure_pa";
 inline constexpr char kThickness[] = "thickness_mm";
+/// Red, green and blue from 0 to 255, of scans that have colours.
+inline constexpr char kScannedColour[] = "colour";
 
 /// Reads a .vtp with any fields or none. One in double precision, which lies far from the origin,
 /// is moved there: pictures are drawn in single precision. INVALID_ARGUMENT, naming the file, for

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "tests/integration/cli/cli_fixture.h"
 
@@ -134,6 +136,29 @@ TEST_F(RenderTest, ThePressureIsInTheColourOfItsBand) {
   draw_with_modulus(3000.0);
   const size_t stiff = expect_band_of_pressure();
   EXPECT_LT(soft, stiff) << "under a stiffer skin the pressure should lie in a higher band";
+}
+
+/// A face that was scanned green is drawn green, before and after, and its result has the colours.
+TEST_F(RenderTest, AFaceHasTheColoursItWasScannedIn) {
+  const std::filesystem::path examples(LIPOFILL_EXAMPLES);
+  std::ifstream face(examples / "faces" / "half_face.obj");
+  std::string coloured;
+  for (std::string line; std::getline(face, line);) {
+    coloured += line + (line.starts_with("v ") ? " 0.2 0.7 0.3\n" : "\n");
+  }
+  write("green.obj", coloured);
+  auto plan = nlohmann::json::parse(std::ifstream(examples / "plans" / "jaw_angle.json"));
+  plan["scan"]["file"] = "green.obj";
+  plan["scan"]["landmarks_file"] = (examples / "faces" / "half_face.landmarks.json").string();
+  write("green.json", plan.dump());
+  const CommandResult made = run("lipofill run green.json --fast --out out --spawn --discard --quiet");
+  ASSERT_EQ(made.exit_code, 0) << made.errors;
+  EXPECT_THAT(read("out/scan_0000.vtp"), HasSubstr("Name=\"colour\""));
+  read_sheet("out/picture.png");
+  const auto is_green = [](const Pixel& p) { return p[1] > p[0] + 40 && p[1] > p[2] + 30; };
+  EXPECT_GT(share(0.0, 0.5, 0.385, 0.9, is_green), 0.15) << "before";
+  EXPECT_GT(share(0.385, 0.5, 0.77, 0.9, is_green), 0.15) << "after";
+  EXPECT_LT(share(0.0, 0.045, 0.385, 0.46, is_green), 0.02) << "displacement";
 }
 
 TEST_F(RenderTest, ASimulationIsDrawnByItsName) {

@@ -32,7 +32,8 @@ endif()
 # position independent by themselves. tests/integration/deploy/check_hardening.py looks.
 add_link_options(-Wl,-z,relro -Wl,-z,now -Wl,-z,noexecstack)
 
-# There are some 230 programs to link. GNU gold comes with ld, and links them in a third of its time.
+# There are some 230 programs to link. GNU gold comes with ld, and links them in a third of its
+# time.
 find_program(GOLD_PROGRAM ld.gold)
 if(GOLD_PROGRAM)
   add_link_options(-fuse-ld=gold)

@@ -47,8 +47,8 @@ struct ScannedSurface : SurfaceMesh {
 /// any number of solids, binary; equal points are merged). Lines end with LF, CR LF or CR; a byte
 /// order mark of UTF-8 counts for nothing. Polygons are cut into triangles inside them; faces of
 /// fewer than three corners and vertices of no face are left out, the others keep their order.
-/// Colours of vertices are kept: red, green and blue of PLY, and of OBJ what follows x, y and z on a
-/// line ("v x y z r g b"), from 0 to 1 or to 255.
+/// Colours of vertices are kept: red, green and blue of PLY, and of OBJ what follows x, y and z
+/// ("v x y z r g b"), from 0 to 1 or to 255.
 /// @param metres_per_unit  0.001 for a file in millimetres
 /// INVALID_ARGUMENT, saying where in the file and what was found there, for a file that is empty,
 /// cut short, of another format, has faces of vertices that are not finite or not there, has no

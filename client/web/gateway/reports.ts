@@ -1,4 +1,4 @@
-// Reports of a plan, made by the program `lipofill` on this machine as `lipofill report` makes them.
+// Reports of a plan, made by the program `lipofill` on this machine, as `lipofill report` does.
 //
 // The page sends the plan and the surfaces that it shows; the program asks the daemon with the
 // caller's own credentials, under a patient that it makes and deletes again. Nothing of a request

@@ -1,41 +1,27 @@
 // Every simulation the caller may see, for a screen on the wall.
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { Simulation_State, type Simulation } from "@wire/simulation_pb";
-import { simulations } from "../api/client";
+import { patients, simulations } from "../api/client";
 import { toProblem } from "../api/errors";
-import { stateClass, stateWord } from "../run/exports";
-import { writeAddress } from "../case/address";
-import { bandOf, cssOf, mmHgPerPa, pressureBands } from "../scene/colour_maps";
+import { allOf } from "../case/open";
+import { addressOf, CardOf, nameOf } from "./card";
+import { alarmsOf, choose, ownerOf, see, type Card, type Seen } from "./cards";
 import { Thumbnails } from "./thumbnails";
-
-interface Card {
-  simulation: Simulation;
-  /** steps a second of the clock, between the last two looks */
-  stepsPerS: number;
-}
 
 const cards = signal<Card[]>([]);
 const trouble = signal("");
+/** how long the daemon took to answer [ms] */
+const answered = signal<number | undefined>(undefined);
 const pictures = signal(new Map<string, string>());
+const pseudonyms = signal<ReadonlyMap<string, string>>(new Map());
 const lookEveryMs = 1000;
-/** Of what ended, only so many of the newest. */
-const mostEnded = 24;
+const slowMs = 3000;
 
-const order: Simulation_State[] = [
-  Simulation_State.FAILED,
-  Simulation_State.RUNNING,
-  Simulation_State.QUEUED,
-  Simulation_State.PAUSED,
-  Simulation_State.READY,
-  Simulation_State.SETTLED,
-  Simulation_State.FINISHED,
-  Simulation_State.STOPPED,
-];
-const rank = ({ state }: Simulation): number => order.indexOf(state);
-const age = ({ createTime }: Simulation): number => -Number(createTime?.seconds ?? 0n);
-const live = [Simulation_State.RUNNING, Simulation_State.QUEUED, Simulation_State.PAUSED, Simulation_State.READY];
-const isLive = ({ state }: Simulation): boolean => live.includes(state);
+const alarms = computed(() =>
+  cards.value.flatMap((card) => alarmsOf(card).map((text) => ({ text, simulation: card.simulation }))),
+);
+
 /** What cards show: plans with painted zones are long. */
 const readMask = {
   paths: [
@@ -48,128 +34,56 @@ const readMask = {
     "create_time",
     "queue_position",
     "parked",
+    "recovery",
     "spec.injections",
+    "spec.model",
+    "spec.time",
   ],
 };
 
 async function listAll(signal: AbortSignal): Promise<Simulation[]> {
-  const all: Simulation[] = [];
-  for (let pageToken = ""; ; ) {
+  return allOf(async (pageToken) => {
     const page = await simulations.listSimulations({ pageSize: 1000, pageToken, readMask }, { signal });
-    all.push(...page.simulations);
-    if (page.nextPageToken === "") return all;
-    pageToken = page.nextPageToken;
-  }
+    return { all: page.simulations, next: page.nextPageToken };
+  });
 }
 
-function choose(all: Simulation[]): Simulation[] {
-  const ended = all
-    .filter((one) => !isLive(one))
-    .sort((a, b) => age(a) - age(b))
-    .slice(0, mostEnded);
-  return [...all.filter(isLive), ...ended].sort((a, b) => rank(a) - rank(b) || age(a) - age(b));
+/** Asked for when somebody new is there. */
+async function learnNames(all: Simulation[], signal: AbortSignal): Promise<void> {
+  const owners = all.map(ownerOf).filter((owner) => owner !== "" && !pseudonyms.value.has(owner));
+  if (owners.length === 0) return;
+  const known = await allOf(async (pageToken) => {
+    const page = await patients.listPatients({ pageSize: 1000, pageToken }, { signal });
+    return { all: page.patients, next: page.nextPageToken };
+  });
+  // Those who are gone keep their id, and are not asked for again.
+  const names = new Map(owners.map((owner) => [owner, owner.split("/")[1]]));
+  for (const { name, displayName } of known) names.set(name, displayName || name.split("/")[1]);
+  pseudonyms.value = names;
 }
 
-async function look(leave: AbortSignal, before: Map<string, { steps: bigint; at: number }>): Promise<void> {
+async function look(leave: AbortSignal, before: Map<string, Seen>): Promise<void> {
+  const began = performance.now();
   try {
     const all = choose(await listAll(leave));
     const now = performance.now();
+    answered.value = now - began;
     cards.value = all.map((simulation) => {
-      const steps = simulation.summary?.steps ?? 0n;
-      const last = before.get(simulation.name);
-      before.set(simulation.name, { steps, at: now });
-      const stepsPerS =
-        last === undefined || simulation.state !== Simulation_State.RUNNING
-          ? 0
-          : (1000 * Number(steps - last.steps)) / (now - last.at);
-      return { simulation, stepsPerS };
+      const seen = see(simulation, before.get(simulation.name), now);
+      before.set(simulation.name, seen);
+      return { simulation, seen };
     });
     trouble.value = "";
+    await learnNames(all, leave);
   } catch (error) {
     if (!leave.aborted) trouble.value = toProblem(error).message;
   }
 }
 
-function Entry({ card: { simulation, stepsPerS } }: { card: Card }) {
-  const summary = simulation.summary;
-  const pressure = (summary?.maxPressurePa ?? 0) * mmHgPerPa;
-  const word = stateWord(simulation);
-  const wanted = (simulation.spec?.injections ?? []).reduce((sum, { volumeMl }) => sum + (volumeMl ?? 0), 0);
-  return (
-    <article class={`card ${stateClass(simulation)}`} aria-label={simulation.displayName || simulation.name}>
-      <header>
-        <h2>{simulation.displayName || simulation.name.split("/")[1]}</h2>
-        <span class="state">
-          {word}
-          {simulation.parked && ", parked"}
-        </span>
-      </header>
-      <div class="card-body">
-        <div class="thumb">
-          {pictures.value.get(simulation.name) ? (
-            <img src={pictures.value.get(simulation.name)} alt="The face as it is now" />
-          ) : (
-            <span class="quiet">no picture yet</span>
-          )}
-        </div>
-        <dl>
-          <div>
-            <dt>Volume</dt>
-            <dd>
-              {(summary?.injectedMl ?? 0).toFixed(1)}
-              <small> / {wanted.toFixed(1)} mL</small>
-            </dd>
-          </div>
-          <div>
-            <dt>Pressure</dt>
-            <dd>
-              <i
-                class="swatch"
-                style={{ background: cssOf(pressureBands[bandOf(pressure)].colour) }}
-                aria-hidden="true"
-              />
-              {pressure.toFixed(1)}
-              <small> mmHg</small>
-            </dd>
-          </div>
-          <div>
-            <dt>Skin rises</dt>
-            <dd>
-              {(summary?.skinMaxDisplacementMm ?? 0).toFixed(1)}
-              <small> mm</small>
-            </dd>
-          </div>
-          <div>
-            <dt>Rate</dt>
-            <dd>
-              {stepsPerS.toFixed(0)}
-              <small> steps/s</small>
-            </dd>
-          </div>
-          <div>
-            <dt>Time</dt>
-            <dd>
-              {(summary?.timeS ?? 0).toFixed(1)}
-              <small> s</small>
-            </dd>
-          </div>
-          <div>
-            <dt>Viewers</dt>
-            <dd>{simulation.viewers}</dd>
-          </div>
-        </dl>
-      </div>
-      <a href={writeAddress({ page: "plan", step: "run", patient: "", plan: "", scan: "", run: simulation.name })}>
-        Open in the planner
-      </a>
-      {simulation.state === Simulation_State.FAILED && <p class="complaint">{simulation.reason}</p>}
-    </article>
-  );
-}
-
 function Totals() {
   const count = (state: Simulation_State): number =>
     cards.value.filter(({ simulation }) => simulation.state === state).length;
+  const isSlow = (answered.value ?? 0) > slowMs;
   return (
     <div class="totals" role="status">
       <span>
@@ -187,15 +101,39 @@ function Totals() {
       <span>
         <b>{cards.value.length}</b> shown
       </span>
-      {trouble.value && <span class="alarm">{trouble.value} Trying again.</span>}
+      {trouble.value ? (
+        <span class="alarm">{trouble.value} Trying again.</span>
+      ) : (
+        answered.value !== undefined && (
+          <span class={isSlow ? "alarm" : ""}>
+            {isSlow ? `The daemon takes ${(answered.value / 1000).toFixed(0)} s to answer` : "The daemon answers"}
+          </span>
+        )
+      )}
     </div>
+  );
+}
+
+function Alarms() {
+  if (alarms.value.length === 0) return null;
+  return (
+    <ul class="alarms" role="alert" aria-label="Alarms">
+      {alarms.value.slice(0, 3).map(({ text, simulation }) => (
+        <li key={`${simulation.name} ${text}`}>
+          <a href={addressOf(simulation.name)}>
+            <b>{pseudonyms.value.get(ownerOf(simulation)) ?? nameOf(simulation)}</b> {text}
+          </a>
+        </li>
+      ))}
+      {alarms.value.length > 3 && <li>and {alarms.value.length - 3} more</li>}
+    </ul>
   );
 }
 
 export function Dashboard() {
   useEffect(() => {
     const leave = new AbortController();
-    const before = new Map<string, { steps: bigint; at: number }>();
+    const before = new Map<string, Seen>();
     const thumbnails = new Thumbnails((name, url) => (pictures.value = new Map(pictures.value).set(name, url)));
     let timer: ReturnType<typeof setTimeout>;
     const turn = async (): Promise<void> => {
@@ -214,9 +152,15 @@ export function Dashboard() {
     <main class="dashboard">
       <h1 class="sr-only">Simulations</h1>
       <Totals />
-      <div class="cards">
+      <Alarms />
+      <div class="cards" tabIndex={0} role="group" aria-label="All simulations">
         {cards.value.map((card) => (
-          <Entry key={card.simulation.name} card={card} />
+          <CardOf
+            key={card.simulation.name}
+            card={card}
+            picture={pictures.value.get(card.simulation.name)}
+            patients={pseudonyms.value}
+          />
         ))}
       </div>
       {cards.value.length === 0 && !trouble.value && <p class="empty">No simulations yet.</p>}

@@ -8,10 +8,15 @@ import { mapFor, paint, skinColour } from "../scene/colour_maps";
 import { largestOf } from "../scene/face_colours";
 import { viewOf } from "../scene/outside_view";
 import { Surface } from "../scene/surface";
+import { Faces } from "./faces";
 import { Viewport } from "../scene/viewport";
 
 const [width, height] = [320, 240];
 const pauseMs = 250;
+/** How much is seen around what moves, so that one knows whose face it is. */
+const around = 2.3;
+/** What moves is drawn so far outside the face, where both would be at one place [mm]. */
+const overFaceMm = 0.35;
 /** So that little looks like little. */
 const leastScaleMm = 3;
 
@@ -24,6 +29,7 @@ export class Thumbnails {
   private readonly shown = new Map<string, bigint>();
   private readonly urls = new Map<string, string>();
   private next = 0;
+  private readonly faces = new Faces();
 
   constructor(private readonly done: (name: string, url: string) => void) {
     Object.assign(this.holder.style, {
@@ -79,11 +85,18 @@ export class Thumbnails {
     const surface = new Surface(mesh);
     surface.move(displacement);
     colour(surface, displacement);
+    const face = await this.faces.of(simulation.spec?.model ?? "");
+    if (face) {
+      for (let k = 0; k < surface.points.length; ++k) surface.points[k] += overFaceMm * surface.normals[k];
+      surface.moved();
+      this.viewport.add(face.actor);
+    }
     this.viewport.add(surface.actor);
     const { focus, direction, up, halfHeight } = viewOf(surface);
-    this.viewport.lookAt(focus, direction, up, halfHeight);
+    this.viewport.lookAt(focus, direction, up, (face ? around : 1) * halfHeight);
     const picture = await this.viewport.capture();
     this.viewport.remove(surface.actor);
+    if (face) this.viewport.remove(face.actor);
     surface.dispose();
     const before = this.urls.get(simulation.name);
     if (before) URL.revokeObjectURL(before);
@@ -103,6 +116,7 @@ export class Thumbnails {
   dispose(): void {
     this.leave.abort();
     this.urls.forEach((url) => URL.revokeObjectURL(url));
+    this.faces.dispose();
     this.viewport.dispose();
     this.holder.remove();
   }

@@ -52,6 +52,14 @@ OTHERS = (
     ("SurgiCase, a review", "0.75-0.94 mm, 95 % within 2.47-2.81 mm"),
 )
 
+# Figures of a forecast whose intervals were held against cases, and their names in forecasts.json.
+INTERVALS = (
+    ("largest lift", "largest_lift"),
+    ("volume of the skin", "skin_volume"),
+    ("pressure", "pressure"),
+    ("lift of a vertex", "lift_of_a_vertex"),
+)
+
 PARTS = (
     "# Credibility",
     """How far can a figure of Lipofill be trusted, and on what evidence? This page answers by the
@@ -59,8 +67,9 @@ PARTS = (
     Modeling and Simulation in Medical Device Submissions* (17 November 2023). Lipofill is a research
     and planning aid, not a medical device; the categories serve as a list that leaves nothing out.""",
     """The page is generated. Its tables come from the [verification suite](verification.md) and from
-    `core/doc/credibility.json`, which `deploy/credibility` measures on real runs; a test compares
-    the page with its generator.""",
+    `core/doc/credibility.json`, which `deploy/credibility` measures on real runs, and
+    `core/doc/forecasts.json`, which `deploy/forecasts` measures; a test compares the page with its
+    generator.""",
     """- *Question of interest*: how much fat, where and in which plane, brings the skin of a face
     nearest to a target, and what pressure comes of it?
     - *Context of use*: planning and research. A surgeon decides; the model is one of several things
@@ -143,7 +152,13 @@ PARTS = (
     be made, the result says why; from 5 % on it is remarked upon.""",
     """What is uncertain of the tissue, the volumes, the place and the retention is carried through
     by ensembles ([decision 037](decisions/037-ensembles.md)). Intervals were held against fresh
-    cases: {case:forecast-3-coverage}. Indices were held against closed forms:
-    {case:forecast-1-ishigami}. Both say how well the model knows itself, not how well it knows a
-    face. Landmarks moved by 3 mm change a settled pressure by 8.5 % and the lift by 1 % (90 faces).""",
+    cases: {case:forecast-3-coverage}. Indices were held against closed forms, and against runs:
+    {case:forecast-1-ishigami}, {case:forecast-4-sobol}.""",
+    """The same at greater length, for a plate with one zone, whose stiffness, thickness and volume are
+    uncertain: a forecast of {members} members against {reference_runs} plans of their own, solved
+    from rest. Indices of the forecast less those of the runs:""",
+    "index_table",
+    "The share of cases that lie in the interval of 90 of 100:",
+    "interval_table",
+    """Both say how well the model knows itself, not how well it knows a face. Landmarks moved by 3 mm change a settled pressure by 8.5 % and the lift by 1 % (90 faces).""",
 )

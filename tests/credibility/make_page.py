@@ -6,7 +6,8 @@ eight categories of evidence of the FDA's guidance on computational modelling (N
     make_page.py --check    exit code 1 where the page is not what would be written
 
 What was verified comes from core/doc/verification.md, and what was measured against published
-figures from core/doc/credibility.json (tests/credibility/measure.py). The words are in evidence.py.
+figures from core/doc/credibility.json (tests/credibility/measure.py). What forecasts were held
+against comes from core/doc/forecasts.json (deploy/forecasts). The words are in evidence.py.
 """
 
 import json
@@ -21,6 +22,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGE = ROOT / "core/doc/credibility.md"
 VERIFICATION = ROOT / "core/doc/verification.md"
 MEASURED = ROOT / "core/doc/credibility.json"
+FORECASTS = ROOT / "core/doc/forecasts.json"
 WIDTH = 120
 
 
@@ -123,6 +125,30 @@ def filler_table(measured):
     return table(("where", "skin gained over what was injected, published", "simulated: median (range)"), rows)
 
 
+def index_table(forecasts):
+    rows = [
+        (
+            index["figure"],
+            f"{index['largest_difference_first']:.3f}",
+            f"{index['largest_difference_total']:.3f}",
+            f"{index['standard_error_of_reference']:.3f}",
+        )
+        for index in forecasts["indices"]
+    ]
+    return table(
+        ("figure", "first index: largest difference", "total index: largest difference", "standard error of the runs"),
+        rows,
+    )
+
+
+def interval_table(forecasts):
+    fresh, reference = forecasts["coverage"], forecasts["coverage_of_reference"]
+    rows = [
+        (name, f"{100.0 * fresh[key]:.1f} %", f"{100.0 * reference[key]:.1f} %") for name, key in evidence.INTERVALS
+    ]
+    return table(("figure", f"{fresh['cases']} fresh cases", f"{reference['cases']:,} cases of the runs"), rows)
+
+
 def faces_of(measured):
     return len({run["face"] for run in measured["runs"]})
 
@@ -137,15 +163,24 @@ def unsettled(measured):
 
 def page():
     measured = json.loads(MEASURED.read_text())
+    forecasts = json.loads(FORECASTS.read_text())
     fill = {
         "verification_table": verification_table(),
         "cadaver_table": cadaver_table(measured),
         "plane_table": plane_table(measured),
         "filler_table": filler_table(measured),
+        "index_table": index_table(forecasts),
+        "interval_table": interval_table(forecasts),
         "assumed_table": table(("what", "figure", "why, and how it is varied"), evidence.ASSUMED),
         "accuracy_table": table(("work", "accuracy"), evidence.OTHERS),
     }
-    counts = {"runs": len(measured["runs"]), "faces": faces_of(measured), "unsettled": unsettled(measured)}
+    counts = {
+        "runs": len(measured["runs"]),
+        "faces": faces_of(measured),
+        "unsettled": unsettled(measured),
+        "members": f"{forecasts['members']:,}",
+        "reference_runs": f"{forecasts['reference_runs']:,}",
+    }
     parts = []
     for part in evidence.PARTS:
         if part in fill:

@@ -22,6 +22,8 @@ const shown = computed(() => chosen(rows.value ?? [], wanted.value));
 const lookEveryMs = 3000;
 /** So many rows are drawn at once; to find others one searches. */
 const mostRows = 200;
+/** Of so many a look asks for the face. */
+const mostAsked = 20;
 
 const sideWords = new Map([
   [PlanSide.PLAN_SIDE_UNSPECIFIED, "–"],
@@ -31,7 +33,20 @@ const sideWords = new Map([
 ]);
 
 const planMask = { paths: ["name", "title", "side", "scan", "content_hash", "update_time", "runs"] };
-const runMask = { paths: ["name", "state"] };
+const runMask = { paths: ["name", "state", "display_name", "create_time", "spec.model"] };
+
+/** Scans by patient, of cases whose face no plan names: asked for once. */
+const scans = new Map<string, string>();
+
+async function findFaces(of: CaseRow[]): Promise<CaseRow[]> {
+  const open = of.filter(({ name, scan, state }) => scan === "" && state !== "new" && !scans.has(name));
+  for (const { name } of open.slice(0, mostAsked)) {
+    const { scans: found } = await patients.listScans({ parent: name, pageSize: 10 });
+    // A target is a scan as well; the face was there before.
+    scans.set(name, found.find(({ report }) => report?.target === undefined)?.name ?? "");
+  }
+  return of.map((row) => (row.scan === "" ? { ...row, scan: scans.get(row.name) ?? "" } : row));
+}
 
 async function look(): Promise<void> {
   try {
@@ -49,7 +64,7 @@ async function look(): Promise<void> {
         return { all: next.simulations, next: next.nextPageToken };
       }),
     ]);
-    [rows.value, trouble.value] = [rowsOf(known, kept, runs), ""];
+    [rows.value, trouble.value] = [await findFaces(rowsOf(known, kept, runs)), ""];
   } catch (error) {
     trouble.value = toProblem(error).message;
   }

@@ -48,7 +48,13 @@ function stateOf(plan: SavedPlan, runs: Map<string, Simulation>): CaseState {
   return run.state === Simulation_State.FAILED ? "failed" : "done";
 }
 
-/** A row a patient: its plan that was changed last speaks for it. */
+/** Of runs that no saved plan names, such as those of the command line: the newest of a patient. */
+function stateOfRun(run: Simulation): CaseState {
+  if (live.includes(run.state)) return "running";
+  return run.state === Simulation_State.FAILED ? "failed" : "done";
+}
+
+/** A row a patient: its plan that was changed last speaks for it, without one its newest run. */
 export function rowsOf(patients: Patient[], plans: SavedPlan[], simulations: Simulation[]): CaseRow[] {
   const runs = new Map(simulations.map((run) => [run.name, run]));
   const byOwner = new Map<string, SavedPlan[]>();
@@ -56,17 +62,24 @@ export function rowsOf(patients: Patient[], plans: SavedPlan[], simulations: Sim
     const owner = ownerOf(plan.name);
     byOwner.set(owner, [...(byOwner.get(owner) ?? []), plan]);
   }
+  const newestRun = new Map<string, Simulation>();
+  for (const run of simulations) {
+    const owner = ownerOf(run.spec?.model ?? "");
+    const known = newestRun.get(owner);
+    if (!known || secondsOf(run.createTime) > secondsOf(known.createTime)) newestRun.set(owner, run);
+  }
   return patients.map((patient) => {
     const own = (byOwner.get(patient.name) ?? []).sort((a, b) => secondsOf(b.updateTime) - secondsOf(a.updateTime));
     const [plan] = own;
+    const run = plan ? undefined : newestRun.get(patient.name);
     return {
       name: patient.name,
       label: patient.displayName || patient.name.split("/").pop()!,
-      title: plan?.title ?? "",
+      title: plan?.title ?? run?.displayName ?? "",
       side: plan?.side ?? PlanSide.PLAN_SIDE_UNSPECIFIED,
-      state: plan ? stateOf(plan, runs) : "new",
+      state: plan ? stateOf(plan, runs) : run ? stateOfRun(run) : "new",
       plans: own.length,
-      changedS: plan ? secondsOf(plan.updateTime) : secondsOf(patient.createTime),
+      changedS: secondsOf(plan?.updateTime ?? run?.createTime ?? patient.createTime),
       scan: own.find(({ scan }) => scan !== "")?.scan ?? "",
     };
   });

@@ -10,17 +10,16 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 TEST_F(FleetTest, ADaemonThatDiesIsSucceededToTheSameBytes) {
-  const v1::Simulation expected = SqliteRun().run(6.0);
+  const v1::Simulation expected = SqliteRun().run(20.0);
   const auto b = add("b");
-  create(6.0, "x");
+  create(20.0, "x");
   await_step("simulations/x", 60);
   daemon_->kill_hard();
   const v1::Simulation ended = await_end_at(*b->simulations, "simulations/x");
   EXPECT_EQ(ended.state(), v1::Simulation::FINISHED) << ended.reason();
   EXPECT_EQ(ended.summary().state_hash(), expected.summary().state_hash());
-  expect_every_step_once(series_at(*b->simulations, "simulations/x"), 600);
+  expect_every_step_once(series_at(*b->simulations, "simulations/x"), 2000);
   EXPECT_THAT(b->process.log(), HasSubstr("simulations/x has no daemon that lives: it goes on here; a was last heard"));
-  EXPECT_THAT(b->process.log(), HasSubstr("s after the last sign of life of its daemon"));
 }
 
 TEST_F(FleetTest, WhatADeadDaemonAcknowledgedIsThere) {
@@ -38,6 +37,7 @@ TEST_F(FleetTest, WhatADeadDaemonAcknowledgedIsThere) {
   // The last one was answered, which its client may not have heard.
   ASSERT_TRUE(insist(*b->simulations, &v1::SimulationService::Stub::Inject, inject, simulation).ok());
   EXPECT_EQ(simulation.spec().injections_size(), 1 + 5);
+  await_log(b->process, "s after the last sign of life of its daemon");
   v1::StopSimulationRequest stop;
   stop.set_name("simulations/x");
   ASSERT_TRUE(insist(*b->simulations, &v1::SimulationService::Stub::StopSimulation, stop, simulation).ok());
@@ -74,14 +74,14 @@ TEST_F(FleetTest, OneThatWasFrozenLetsGoOfWhatAnotherTook) {
 }
 
 TEST_F(FleetTest, OneThatDrainsHandsOver) {
-  const v1::Simulation expected = SqliteRun().run(6.0);
+  const v1::Simulation expected = SqliteRun().run(20.0);
   const auto b = add("b");
-  create(6.0, "x");
+  create(20.0, "x");
   await_step("simulations/x", 60);
   EXPECT_EQ(daemon_->terminate(), 0);
   const v1::Simulation ended = await_end_at(*b->simulations, "simulations/x");
   EXPECT_EQ(ended.summary().state_hash(), expected.summary().state_hash());
-  expect_every_step_once(series_at(*b->simulations, "simulations/x"), 600);
+  expect_every_step_once(series_at(*b->simulations, "simulations/x"), 2000);
 }
 
 TEST_F(FleetTest, TwoSurvivorsShareWhatADeadOneHad) {

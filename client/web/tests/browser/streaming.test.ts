@@ -58,7 +58,7 @@ describe("the dashboard", () => {
     const card = wall.getByRole("article", { name: "jaw-angle" });
     await card.getByText("Running").waitFor();
     await wall.waitForFunction(() => /[1-9]\d* steps\/s/.test(document.querySelector("article")?.textContent ?? ""));
-    expect(await card.textContent()).toMatch(/Viewers[1-9]/);
+    expect(await card.textContent()).toMatch(/Volume[\d.]+ \/ 4\.5 mL.*at most .* left/);
     const face = card.getByAltText("The face as it is now");
     const first = await face.getAttribute("src", { timeout: 20_000 });
     await wall.waitForFunction(

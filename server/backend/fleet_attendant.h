@@ -47,9 +47,9 @@ class FleetAttendant {
   const std::shared_ptr<Departures> departures_;
   LeaseClock::time_point renewal_;  ///< the last one that was tried
   std::string told_;                ///< why the lease is not renewed, as the log has it
-  /// What the database did not say is this daemon's when it was looked at last.
+  /// These are held here, and the database did not say so at the last look; with their epochs.
   std::map<std::string, uint64_t> doubtful_;
-  /// What was taken over and is on its way, with when its daemon was last heard of.
+  /// These were taken over and are on their way; with when their daemon was last heard of.
   std::map<std::string, LeaseClock::time_point> arrivals_;
   std::atomic<double> last_takeover_s_ = 0.0;
   bool was_full_ = false;

@@ -10,7 +10,7 @@
 
 namespace lipofill::server {
 
-/// So many operations that are done are kept, the newest; older ones go when one more is done.
+/// The newest operations that are done are kept, so many; an older one goes when one more is done.
 inline constexpr int kMaxDoneOperations = 64;
 
 /// Long-running operations and their finished parts. One that is under way is here until it is

@@ -11,7 +11,7 @@ namespace lipofill::server {
 
 class Ownership;
 
-/// What becomes of a write to a simulation that no daemon owns.
+/// Tells whether a simulation that no daemon owns may be written.
 enum class Unowned { kIsRefused, kMayBeWritten };
 
 /// Keeps daemons from the records of simulations that another one owns. All but the first are

@@ -19,7 +19,7 @@ const patienceMs = 5000;
 
 const retentions = ["pooled", "acquired_atrophy", "mixed_indications", "cotton_pad", "centrifuge"];
 
-/** What a report is made of, as it is checked. */
+/** The order of a report, once it is checked. */
 interface Order {
   plan: string;
   face: string;
@@ -48,7 +48,7 @@ function planOf(value: unknown, hasFace: boolean): string {
   try {
     plan = fromJson(PlanSchema, value as JsonValue);
   } catch (error) {
-    throw new Refused(`plan is none: ${(error as Error).message}`);
+    throw new Refused(`plan is not a plan: ${(error as Error).message}`);
   }
   if (plan.parts.length > 0) throw new Refused("plan has several parts of a face; a report is of one");
   plan.bone = undefined;
@@ -69,9 +69,9 @@ export function readOrder(body: string): Order {
   try {
     order = JSON.parse(body) as Record<string, unknown>;
   } catch {
-    throw new Refused("the body is no JSON");
+    throw new Refused("the body is not JSON");
   }
-  if (typeof order !== "object" || order === null) throw new Refused("the body is no JSON object");
+  if (typeof order !== "object" || order === null) throw new Refused("the body is not a JSON object");
   const [face, goal] = [textOf(order.face, "face"), textOf(order.goal, "goal")];
   const pseudonym = order.pseudonym ?? "";
   if (typeof pseudonym !== "string" || !/^[a-z0-9-]{0,63}$/.test(pseudonym))

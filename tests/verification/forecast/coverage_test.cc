@@ -12,7 +12,7 @@ namespace lipofill::verification {
 namespace {
 
 constexpr int kTwins = 200;
-/// Of 90 of 100, whatever the share: 88 to 92.
+/// 88 to 92 of 100 are as good as 90.
 constexpr double kWithin = 0.02;
 
 TEST(Coverage, IntervalsHoldNinetyOfAHundredFreshCases) {

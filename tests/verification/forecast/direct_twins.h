@@ -12,8 +12,8 @@ namespace lipofill::verification {
 /// Patients that an ensemble is held against: plans of their own on models of their own, solved
 /// from rest, one after the other. They share no code with ensembles but the model itself.
 
-/// What came of one: its largest lift [m], the volume that its skin gains [m3], the pressure of its
-/// zone [Pa], and the lift of each node [m].
+/// The result of one: its largest lift [m], the volume that its skin gains [m3], the pressure of
+/// its zone [Pa], and the lift of each node [m].
 struct Twin {
   double lift = 0.0;
   double volume = 0.0;

@@ -8,7 +8,7 @@
 namespace lipofill::verification {
 namespace {
 
-/// Of A and of B; six times as many runs. deploy/forecasts has ten thousand.
+/// A and B have so many each, which makes six times as many runs; deploy/forecasts makes 10,000.
 constexpr int kPatients = 80;
 constexpr double kAllowed = 0.03;
 

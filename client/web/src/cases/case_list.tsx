@@ -22,7 +22,7 @@ const shown = computed(() => chosen(rows.value ?? [], wanted.value));
 const lookEveryMs = 3000;
 /** So many rows are drawn at once; to find others one searches. */
 const mostRows = 200;
-/** Of so many a look asks for the face. */
+/** A look asks for the faces of so many cases. */
 const mostAsked = 20;
 
 const sideWords = new Map([

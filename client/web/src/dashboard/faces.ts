@@ -3,13 +3,13 @@ import { patients } from "../api/client";
 import { collectMeshes } from "../api/meshes";
 import { Surface } from "../scene/surface";
 
-/** So many stay; those of a wall and some more. */
+/** So many faces are kept: those of a wall and some more. */
 const mostFaces = 24;
 
 export class Faces {
   private readonly known = new Map<string, Surface | undefined>();
 
-  /** Of a model; undefined where it has none, as a plate, or where it cannot be had. */
+  /** Gives the face of a model; undefined where it has none (a plate) or it cannot be fetched. */
   async of(model: string): Promise<Surface | undefined> {
     if (model === "") return undefined;
     if (!this.known.has(model)) {

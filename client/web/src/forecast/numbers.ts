@@ -1,8 +1,8 @@
-// What a forecast says, as the page shows it: maps of the skin, figures with their intervals.
+// The page shows a forecast by these: maps of the skin, and figures with their intervals.
 import type { Forecast, ForecastFigure, ForecastTime } from "@wire/forecast_service_pb";
 import { mapFor, mmHgPerPa, type ColourMap } from "../scene/colour_maps";
 
-/** What the skin is coloured by; "off": the run, or the face, is shown in its place. */
+/** The skin is coloured by it; "off": the run, or the face, is shown in its place. */
 export type ForecastView = "off" | "mean" | "low" | "high" | "spread";
 export type ForecastMap = Exclude<ForecastView, "off">;
 
@@ -54,7 +54,7 @@ export interface Interval {
   high: number;
 }
 
-/** In the unit that is shown: mmHg for pressures. */
+/** The interval has the unit that is shown: mmHg for pressures. */
 export function intervalOf({ unit, p05, p50, p95 }: ForecastFigure): Interval {
   const factor = unit === "Pa" ? mmHgPerPa : 1;
   return { low: factor * p05, middle: factor * p50, high: factor * p95 };

@@ -39,7 +39,7 @@ const colours = computed(() =>
   forecast.value && forecastView.value !== "off" ? mapOf(forecast.value, forecastView.value) : undefined,
 );
 
-/** What the picture shows of it: the skin of the model as it moves on average, and its colours. */
+/** The picture shows the skin of the model as it moves on average, in the colours of the map. */
 export const shownForecast = computed(() => {
   const [time, view, skin] = [forecastTime.value, forecastView.value, modelMeshes.value?.get("skin")];
   if (!showsForecast.value || time === undefined || view === "off" || skin === undefined) return undefined;

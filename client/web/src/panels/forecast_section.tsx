@@ -23,7 +23,7 @@ const retentions = [
   { value: Retention_Preset.CENTRIFUGE, label: "Fat from a centrifuge, 34 %" },
 ];
 
-/** What is left of each zone, and what to inject so that its plan is. */
+/** The table has what is left of each zone, and what to inject so that its planned volume is. */
 function Zones() {
   const { zones, times } = forecast.value!;
   const last = times.at(-1);

@@ -23,7 +23,7 @@ export function bindForecast(scene: FaceScene): () => void {
   };
 }
 
-/** What the forecast says under a place on the screen [mm]. */
+/** Reads the forecast under a place on the screen [mm]. */
 export function forecastAt(clientX: number, clientY: number): { mean: number; low: number; high: number } | undefined {
   if (!shownForecast.value || !perVertex.value) return undefined;
   const found = surface?.valuesAt(clientX, clientY, perVertex.value);

@@ -46,7 +46,7 @@ export function ForecastProbe() {
   );
 }
 
-/** In place of the simulated time: the months that the forecast tells of. */
+/** The months that the forecast tells of take the place of the simulated time. */
 export function MonthLine() {
   const times = forecast.value?.times ?? [];
   const now = forecastTime.value;

@@ -28,7 +28,7 @@ import type { Quantity } from "../scene/colour_maps";
 import { ForecastTools } from "./forecast_tools";
 import { NearTools } from "./near_tools";
 
-/** In a narrow picture the buttons wait behind one. */
+/** The buttons wait behind one where the picture is narrow. */
 const isOpen = signal(false);
 
 const axes = () => runAxes.value ?? axesOf(region.value?.landmarksMm ?? {}, region.value?.axes);

@@ -1,4 +1,4 @@
-// What the gateway takes as an order for a report, and what it makes of the program's words.
+// The gateway takes an order for a report, and makes a message of the program's words.
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
@@ -28,8 +28,8 @@ describe("an order", () => {
   });
 
   it("is refused with the field, its value and what it must be", () => {
-    expect(() => readOrder("{")).toThrow("no JSON");
-    expect(() => order({ plan: { nothing: 1 } })).toThrow(/plan is none: .*nothing/);
+    expect(() => readOrder("{")).toThrow("not JSON");
+    expect(() => order({ plan: { nothing: 1 } })).toThrow(/plan is not a plan: .*nothing/);
     expect(() => order({ face: undefined })).toThrow("face is missing");
     expect(() => order({ face: 7 })).toThrow("face must be a text");
     expect(() => order({ language: "--out" })).toThrow('language is "--out", must be one of en, de');

@@ -19,7 +19,7 @@ using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// What a daemon has of a shared store.
+/// A daemon, as far as its share of a store goes.
 struct Daemon {
   Daemon(const std::string& data, const std::string& place, const std::string& name)
       : directory(*DataDirectory::open_shared(data, name)),
@@ -29,7 +29,7 @@ struct Daemon {
     EXPECT_TRUE(others.ok()) << others.status();
     store->fence_by(*ownership);
   }
-  /// Whatever the time that the test takes.
+  /// Makes the lease outlast the test, however long that takes.
   void keep_lease(const std::string& place) const {
     PostgresServer::execute(
         place, "UPDATE daemons SET renewed = now() + interval '3 seconds' WHERE name = '" + ownership->name() + "'");

@@ -132,7 +132,7 @@ CREATE INDEX plan_runs_by_plan ON plan_runs(patient, plan);
 PRAGMA user_version = 6;
 )";
 
-/// What is summed since then.
+/// Makes the sums that version 6 keeps.
 std::string sums_of_version_6() {
   std::string statements = make_row_sums(5);
   return statements.substr(0, statements.find("\nALTER TABLE operations "));

@@ -20,6 +20,11 @@ LeaseClock::duration to_duration(double seconds) {
   return std::chrono::duration_cast<LeaseClock::duration>(std::chrono::duration<double>(seconds));
 }
 
+/// Has a simulation brought back without a pause before.
+void await_now(Backend& backend, const std::string& id, const std::string& why) {
+  backend.awaited.note(id, why, 0, Awaited::Clock::now() - std::chrono::minutes(1));
+}
+
 std::string describe(const Orphan& orphan) {
   if (!orphan.age_s) return "";
   return absl::StrFormat("; %s was last heard of %.1f s ago", orphan.daemon, *orphan.age_s);
@@ -96,7 +101,7 @@ void FleetAttendant::look_round() {
   take_over();
 }
 
-// What was in memory when the lease ended may be another's by now: it goes before this daemon acts
+// Others may own by now what was in memory when the lease ended: it goes before this daemon acts
 // on its new lease.
 void FleetAttendant::renew() {
   renewal_ = LeaseClock::now();
@@ -166,7 +171,7 @@ void FleetAttendant::bring_back_own(const std::string& id, uint64_t epoch) {
   const auto record = backend_.store.get_simulation(id);
   if (!record.ok()) return;
   if (has_ended(record->state) || is_parked(*record)) return ownership_.give_back(id, epoch);
-  backend_.awaited.note(id, "this daemon had no lease for a while", 0, Awaited::Clock::now() - std::chrono::minutes(1));
+  await_now(backend_, id, "this daemon had no lease for a while");
 }
 
 // A few at a time, and each daemon begins elsewhere in the list, so that those that live share what
@@ -187,8 +192,7 @@ void FleetAttendant::take_over() {
     if (!taken.ok()) continue;  // another was quicker
     spdlog::warn("{} has no daemon that lives: it goes on here{}", simulation_name(id), describe(orphan));
     if (orphan.age_s) arrivals_[id] = LeaseClock::now() - to_duration(*orphan.age_s);
-    backend_.awaited.note(id, "its daemon died, and this one takes it over", 0,
-                          Awaited::Clock::now() - std::chrono::minutes(1));
+    await_now(backend_, id, "its daemon died, and this one takes it over");
   }
 }
 

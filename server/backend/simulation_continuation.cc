@@ -85,9 +85,7 @@ absl::StatusOr<std::shared_ptr<Session>> continue_simulation(Backend& backend, c
   if (!known.ok()) return known.status();
   if (*known) return nullptr;
   TakenForNow taken_for_now(backend.store, id);
-  if (Ownership* const ownership = ownership_of(backend.store); ownership != nullptr) {
-    if (absl::Status taken = ownership->take(id); !taken.ok()) return taken;
-  }
+  if (absl::Status taken = take_ownership(backend.store, id); !taken.ok()) return taken;
   auto reopened = reopen(backend, id, order, unwanted);
   if (!reopened.ok()) return reopened.status();
   simulation::Simulation& simulation = *reopened->simulation;

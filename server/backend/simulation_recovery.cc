@@ -30,9 +30,7 @@ struct Revived {
 /// Makes what a simulation goes on with, in a new epoch. It is this daemon's from here on, before
 /// its commands are read: nobody else adds one to them.
 absl::StatusOr<Revived> revive(Backend& backend, const SimulationRecord& record) {
-  if (Ownership* const ownership = ownership_of(backend.store); ownership != nullptr) {
-    if (absl::Status taken = ownership->take(record.id); !taken.ok()) return taken;
-  }
+  if (absl::Status taken = take_ownership(backend.store, record.id); !taken.ok()) return taken;
   const auto commands = backend.store.list_commands(record.id);
   if (!commands.ok()) return commands.status();
   auto ground = find_ground(backend, record, *commands);

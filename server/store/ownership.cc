@@ -280,9 +280,14 @@ absl::StatusOr<std::vector<DaemonRecord>> Ownership::read_daemons() {
   return daemons;
 }
 
+absl::Status take_ownership(const Store& store, const std::string& simulation) {
+  Ownership* const ownership = ownership_of(store);
+  return ownership == nullptr ? absl::OkStatus() : ownership->take(simulation);
+}
+
 TakenForNow::TakenForNow(const Store& store, std::string simulation)
     : ownership_(ownership_of(store)), simulation_(std::move(simulation)) {
-  // What it owned before, it keeps.
+  // It keeps one that it owned before.
   if (ownership_ != nullptr && ownership_->tenures()->epoch_of(simulation_)) ownership_ = nullptr;
 }
 

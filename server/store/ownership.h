@@ -86,13 +86,13 @@ class Ownership {
   bool has_left() const { return has_left_; }
 
   /// Takes a simulation that nobody owns, or one whose lease has ended, or this daemon, in a new
-  /// epoch. What owned_elsewhere() says else.
+  /// epoch. Otherwise returns what owned_elsewhere() says.
   absl::Status take(const std::string& simulation);
   /// Gives it back if it still is owned in this epoch.
   void give_back(const std::string& simulation, uint64_t epoch);
   /// The daemon that owns a simulation; none where nobody does.
   absl::StatusOr<std::optional<DaemonRecord>> owner_of(const std::string& simulation);
-  /// What this daemon owns, by the database, with the epochs.
+  /// Lists what this daemon owns by the database, with the epochs.
   absl::StatusOr<std::map<std::string, uint64_t>> list_own();
   /// The simulations that have not ended, are not parked, and have no owner that lives.
   absl::StatusOr<std::vector<Orphan>> list_orphans();
@@ -146,5 +146,8 @@ class TakenForNow {
 
 /// Who owns the simulations of a store; null where this daemon alone has its database.
 Ownership* ownership_of(const Store& store);
+
+/// Ownership::take() by the daemon of a store; OK where it alone has its database.
+absl::Status take_ownership(const Store& store, const std::string& simulation);
 
 }  // namespace lipofill::server

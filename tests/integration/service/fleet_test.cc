@@ -2,6 +2,7 @@
 // becomes of it when its daemon dies or freezes, and which daemons are refused.
 
 #include "tests/integration/service/fleet_fixture.h"
+#include "tests/integration/service/sqlite_run.h"
 
 namespace lipofill::testing {
 namespace {

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "tests/integration/service/run_fixture.h"
+#include "tests/integration/service/sqlite_run.h"
 #include "tests/unit/server/postgres_server.h"
 
 namespace lipofill::testing {
@@ -30,18 +31,6 @@ class PostgresTest : public RunTest {
   }
 
   const std::string place_;
-};
-
-/// The same model and plans on a daemon with SQLite.
-class SqliteRun : public RunTest {
- public:
-  v1::Simulation run(double end_s) {
-    create(end_s, "x");
-    return await_end("simulations/x");
-  }
-
- private:
-  void TestBody() override {}
 };
 
 TEST_F(PostgresTest, ARunThatWasKilledComesToTheBytesOfOneOnSqlite) {

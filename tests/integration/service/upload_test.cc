@@ -20,6 +20,11 @@ class UploadTest : public ServiceTest {
     EXPECT_TRUE(status.ok()) << status.error_message();
     return scan;
   }
+  std::unique_ptr<grpc::ClientReader<v1::MeshSlice>> download(Context& context, const v1::Scan& scan) {
+    v1::DownloadScanMeshRequest request;
+    request.set_name(scan.name());
+    return patients_->DownloadScanMesh(&context, request);
+  }
   int n_scans() {
     v1::ListScansRequest request;
     request.set_parent("patients/anna");
@@ -46,9 +51,7 @@ TEST_F(UploadTest, GivesTheSurfaceBackInMillimetres) {
   v1::Scan scan;
   ASSERT_TRUE(upload("patients/anna", v1::OBJ, sheet_obj(60), scan).ok());
   Context context;
-  v1::DownloadScanMeshRequest request;
-  request.set_name(scan.name());
-  auto stream = patients_->DownloadScanMesh(&context, request);
+  auto stream = download(context, scan);
   auto rows = read_mesh_rows(*stream);
   EXPECT_EQ(rows, (std::map<std::string, uint64_t>{{"scan.points", 3600u}, {"scan.cells", 2u * 59 * 59}}));
 }
@@ -59,9 +62,7 @@ TEST_F(UploadTest, GivesTheColoursThatAScanHas) {
   ASSERT_TRUE(upload("patients/anna", v1::OBJ, bytes, scan).ok());
   restart();
   Context context;
-  v1::DownloadScanMeshRequest request;
-  request.set_name(scan.name());
-  auto stream = patients_->DownloadScanMesh(&context, request);
+  auto stream = download(context, scan);
   v1::MeshSlice slice;
   std::map<std::string, std::string> data;
   while (stream->Read(&slice)) {
@@ -74,9 +75,7 @@ TEST_F(UploadTest, GivesTheColoursThatAScanHas) {
 TEST_F(UploadTest, GivesNoSurfaceOfAScanThatIsNotComplete) {
   const v1::Scan scan = create_scan("patients/anna", v1::OBJ, sheet_obj(60));
   Context context;
-  v1::DownloadScanMeshRequest request;
-  request.set_name(scan.name());
-  auto stream = patients_->DownloadScanMesh(&context, request);
+  auto stream = download(context, scan);
   v1::MeshSlice slice;
   EXPECT_FALSE(stream->Read(&slice));
   EXPECT_EQ(stream->Finish().error_code(), grpc::StatusCode::FAILED_PRECONDITION);

@@ -24,9 +24,6 @@ export interface Owner {
   displayName: string;
 }
 
-/** Of a scan, a model: patients/{patient}. */
-export const ownerOf = (name: string): string => name.split("/").slice(0, 2).join("/");
-
 export async function loadMesh(of: Scan): Promise<Mesh> {
   const mesh = (await collectMeshes(patients.downloadScanMesh({ name: of.name }))).get("scan");
   if (mesh === undefined) throw new Error("the scan came without its surface");

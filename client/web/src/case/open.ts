@@ -10,6 +10,7 @@ import { SimulationSpecSchema, type Simulation } from "@wire/simulation_pb";
 import { attempt, remark } from "../activity";
 import { patients, plans, simulations } from "../api/client";
 import { collectMeshes } from "../api/meshes";
+import { ownerOf } from "../api/runs";
 import { uploadScan } from "../api/upload";
 import { build, takeLandmarks, takePlan } from "../plan/actions";
 import { newPlan } from "../plan/new_plan";
@@ -19,7 +20,7 @@ import { patient, patientName, plan, replacePlan, scan, setModel, specText, star
 import { open, runText } from "../run/run";
 import { planOfRun } from "../run/state";
 import { listTargets, showTarget } from "../target/make_target";
-import { beginCase, closeCase, loadMesh, ownerOf, showFace, type Owner } from "./face";
+import { beginCase, closeCase, loadMesh, showFace, type Owner } from "./face";
 import { keepPlan } from "./keeper";
 import { keptDraft, saved, setSaved } from "./saved_plan";
 

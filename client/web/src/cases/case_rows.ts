@@ -2,6 +2,7 @@
 import { Simulation_State, type Simulation } from "@wire/simulation_pb";
 import { PlanSide, type SavedPlan } from "@wire/plan_service_pb";
 import type { Patient } from "@wire/patient_service_pb";
+import { isLive, ownerOf } from "../api/runs";
 
 export type CaseState = "new" | "planned" | "running" | "done" | "changed" | "failed";
 
@@ -35,22 +36,20 @@ export interface Wanted {
   order: "date" | "name";
 }
 
-const live = [Simulation_State.RUNNING, Simulation_State.QUEUED, Simulation_State.PAUSED, Simulation_State.READY];
-const ownerOf = (name: string): string => name.split("/").slice(0, 2).join("/");
 const secondsOf = (time: { seconds: bigint } | undefined): number => Number(time?.seconds ?? 0n);
 
 function stateOf(plan: SavedPlan, runs: Map<string, Simulation>): CaseState {
   const newest = plan.runs[0];
   const run = newest && runs.get(newest.simulation);
   if (run === undefined) return "planned";
-  if (live.includes(run.state)) return "running";
+  if (isLive(run.state)) return "running";
   if (newest.contentHash !== plan.contentHash) return "changed";
   return run.state === Simulation_State.FAILED ? "failed" : "done";
 }
 
-/** Of runs that no saved plan names, such as those of the command line: the newest of a patient. */
+/** Tells the state of a case by its newest run, where no saved plan names one (command line). */
 function stateOfRun(run: Simulation): CaseState {
-  if (live.includes(run.state)) return "running";
+  if (isLive(run.state)) return "running";
   return run.state === Simulation_State.FAILED ? "failed" : "done";
 }
 

@@ -1,5 +1,6 @@
-// What cards of the dashboard say of a simulation: whose it is, how far it has come, what is wrong.
+// A card of the dashboard says whose a simulation is, how far it has come and what is wrong.
 import { Simulation_State, type Simulation } from "@wire/simulation_pb";
+import { isLive as isLiveState, ownerOf as ownerOfName } from "../api/runs";
 import { mmHgPerPa, pressureBands } from "../scene/colour_maps";
 
 /** A simulation between looks. */
@@ -20,9 +21,9 @@ export interface Card {
   seen: Seen;
 }
 
-/** Of what ended, only so many of the newest. */
+/** So many simulations that have ended are shown, the newest. */
 const mostEnded = 24;
-/** Without a step for so long something is wrong; a shape found directly is one long step. */
+/** A run that takes no step for so long is stalled; a shape found directly is one long step. */
 const [stalledMs, stalledDirectlyMs] = [15_000, 300_000];
 const defaultEndS = 60;
 const paceKept = 0.7;
@@ -40,8 +41,7 @@ const order: Simulation_State[] = [
 ];
 const rank = ({ state }: Simulation): number => order.indexOf(state);
 const age = ({ createTime }: Simulation): number => -Number(createTime?.seconds ?? 0n);
-const live = [Simulation_State.RUNNING, Simulation_State.QUEUED, Simulation_State.PAUSED, Simulation_State.READY];
-export const isLive = ({ state }: Simulation): boolean => live.includes(state);
+export const isLive = ({ state }: Simulation): boolean => isLiveState(state);
 
 export function choose(all: Simulation[]): Simulation[] {
   const ended = all
@@ -51,7 +51,7 @@ export function choose(all: Simulation[]): Simulation[] {
   return [...all.filter(isLive), ...ended].sort((a, b) => rank(a) - rank(b) || age(a) - age(b));
 }
 
-/** What a look adds to the one before. */
+/** Adds to the last look what this one tells. */
 export function see({ state, summary }: Simulation, before: Seen | undefined, nowMs: number): Seen {
   const [steps, timeS] = [summary?.steps ?? 0n, summary?.timeS ?? 0];
   const at = { steps, timeS, atMs: nowMs };
@@ -84,7 +84,7 @@ export function timeLeft({ simulation, seen }: Card): string {
 
 export const pressureOf = ({ summary }: Simulation): number => (summary?.maxPressurePa ?? 0) * mmHgPerPa;
 
-/** What somebody has to look at. */
+/** Lists what somebody has to look at. */
 export function alarmsOf({ simulation, seen }: Card): string[] {
   const alarms: string[] = [];
   const { state, reason, summary, recovery } = simulation;
@@ -100,7 +100,4 @@ export function alarmsOf({ simulation, seen }: Card): string[] {
 }
 
 /** patients/{patient}; empty where it is not known */
-export const ownerOf = ({ spec }: Simulation): string => {
-  const parts = (spec?.model ?? "").split("/");
-  return parts[0] === "patients" ? `${parts[0]}/${parts[1]}` : "";
-};
+export const ownerOf = ({ spec }: Simulation): string => ownerOfName(spec?.model ?? "");

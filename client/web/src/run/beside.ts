@@ -3,7 +3,7 @@ import { computed, effect, signal } from "@preact/signals";
 import { Simulation_State, type Simulation } from "@wire/simulation_pb";
 import { tell } from "../activity";
 import { lastFrame, type LastFrame } from "../api/last_frame";
-import { ownerOf } from "../case/face";
+import { ownerOf } from "../api/runs";
 import { runsOf } from "../case/open";
 import { faceMesh, simulation } from "./state";
 

@@ -5,6 +5,7 @@ import { Simulation_State, type SeriesRow, type Simulation } from "@wire/simulat
 import type { Evaluation } from "@wire/simulation_service_pb";
 import type { Violation } from "../api/errors";
 import type { Mesh } from "../api/meshes";
+import { isLive } from "../api/runs";
 import type { Frame } from "../api/watch";
 import type { Axes } from "../scene/views";
 import { FrameStore } from "./frame_store";
@@ -39,8 +40,7 @@ export const planOfRun = signal("");
 export const recorded = signal("");
 
 export const state = computed(() => simulation.value?.state ?? Simulation_State.STATE_UNSPECIFIED);
-const underWay = [Simulation_State.READY, Simulation_State.QUEUED, Simulation_State.RUNNING, Simulation_State.PAUSED];
-export const isUnderWay = computed(() => underWay.includes(state.value));
+export const isUnderWay = computed(() => isLive(state.value));
 /** It takes the commands of one that runs. */
 export const isRunning = computed(
   () => state.value === Simulation_State.RUNNING || state.value === Simulation_State.QUEUED,

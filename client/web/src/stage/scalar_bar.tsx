@@ -1,4 +1,5 @@
 // What the colours mean.
+import type { ComponentChildren } from "preact";
 import { cssOf, pressureBands, quantities, type ColourMap, type Quantity } from "../scene/colour_maps";
 
 function gradient({ table }: ColourMap): string {
@@ -25,9 +26,26 @@ function Bands({ map }: { map: ColourMap }) {
   );
 }
 
-/** Numbers of one kind, without words for the ends. */
-export function ColourBar({ map, label, unit }: { map: ColourMap; label: string; unit: string }) {
+function Shades({ map }: { map: ColourMap }) {
   const marks = [0, 0.25, 0.5, 0.75, 1].map((share) => map.low + share * (map.high - map.low));
+  return (
+    <div class="bar" style={{ background: gradient(map) }}>
+      {marks.map((mark, k) => (
+        <span key={k} style={{ bottom: `${k * 25}%` }}>
+          {Number(mark.toPrecision(3))}
+        </span>
+      ))}
+    </div>
+  );
+}
+
+interface Meaning {
+  map: ColourMap;
+  label: string;
+  unit: string;
+}
+
+function Titled({ map, label, unit, children }: Meaning & { children: ComponentChildren }) {
   return (
     <div class="scalar-bar" role="img" aria-label={`${label}, from ${map.low} to ${map.high} ${unit}`}>
       <div class="scalar-title">
@@ -35,40 +53,27 @@ export function ColourBar({ map, label, unit }: { map: ColourMap; label: string;
         <br />
         <span class="quiet">{unit}</span>
       </div>
-      <div class="bar" style={{ background: gradient(map) }}>
-        {marks.map((mark, k) => (
-          <span key={k} style={{ bottom: `${k * 25}%` }}>
-            {Number(mark.toPrecision(3))}
-          </span>
-        ))}
-      </div>
+      {children}
     </div>
+  );
+}
+
+/** Numbers of one kind, without words for the ends. */
+export function ColourBar(meaning: Meaning) {
+  return (
+    <Titled {...meaning}>
+      <Shades map={meaning.map} />
+    </Titled>
   );
 }
 
 export function ScalarBar({ map, quantity }: { map: ColourMap; quantity: Quantity }) {
   const { label, unit } = quantities[quantity];
-  const marks = [0, 0.25, 0.5, 0.75, 1].map((share) => map.low + share * (map.high - map.low));
   return (
-    <div class="scalar-bar" role="img" aria-label={`${label}, from ${map.low} to ${map.high} ${unit}`}>
-      <div class="scalar-title">
-        {label}
-        <br />
-        <span class="quiet">{unit}</span>
-      </div>
+    <Titled map={map} label={label} unit={unit}>
       {quantity === "distance" && <div class="bar-end">too much</div>}
-      {quantity === "pressure" ? (
-        <Bands map={map} />
-      ) : (
-        <div class="bar" style={{ background: gradient(map) }}>
-          {marks.map((mark, k) => (
-            <span key={k} style={{ bottom: `${k * 25}%` }}>
-              {Number(mark.toPrecision(3))}
-            </span>
-          ))}
-        </div>
-      )}
+      {quantity === "pressure" ? <Bands map={map} /> : <Shades map={map} />}
       {quantity === "distance" && <div class="bar-end below">missing</div>}
-    </div>
+    </Titled>
   );
 }

@@ -4,8 +4,9 @@ import { join } from "node:path";
 import type { Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
 import { halfFace, halfFaceLandmarks } from "../system/faces";
+import { settledPlan } from "../system/plans";
 import { PictureReader, type Box } from "../system/pixels";
-import { picture, root, System } from "../system/system";
+import { picture, System } from "../system/system";
 
 const system = new System();
 const errors: string[] = [];
@@ -28,14 +29,6 @@ function colouredFace(): string {
   });
   const path = join(system.folder, "coloured.obj");
   writeFileSync(path, coloured.join("\n"));
-  return path;
-}
-
-function settledPlan(): string {
-  const plan = JSON.parse(readFileSync(join(root, "client/examples/plans/jaw_angle.json"), "utf8"));
-  plan.simulation.time = { goal: "SETTLED_SHAPE", end_s: 600 };
-  const path = join(system.folder, "settled.json");
-  writeFileSync(path, JSON.stringify(plan));
   return path;
 }
 
@@ -85,7 +78,7 @@ describe("a scan with colours", () => {
 
   it("keeps them under a result, also beside the face before", async () => {
     await page.getByLabel("From file…").setInputFiles(halfFaceLandmarks);
-    await page.getByLabel("Open plan…").setInputFiles(settledPlan());
+    await page.getByLabel("Open plan…").setInputFiles(settledPlan(system.folder));
     await page.getByRole("navigation", { name: "Steps of the plan" }).getByRole("button", { name: "Run" }).click();
     await page.getByRole("button", { name: "▶ Run" }).click();
     await page.locator(".state-settled").first().waitFor({ timeout: 60_000 });

@@ -5,9 +5,10 @@ import { join } from "node:path";
 import type { Download, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
 import { wcagProblems } from "../system/axe";
-import { halfFace, halfFaceLandmarks, sunkFace } from "../system/faces";
+import { halfFace } from "../system/faces";
+import { openSunkFace } from "../system/plans";
 import { PictureReader, type Box } from "../system/pixels";
-import { picture, root, System } from "../system/system";
+import { picture, System } from "../system/system";
 
 const system = new System();
 const errors: string[] = [];
@@ -49,14 +50,7 @@ beforeAll(async () => {
   await system.start();
   page = await system.newPage(errors);
   reader = await PictureReader.open(page);
-  await page.goto(system.address);
-  const file = join(system.folder, "sunk.obj");
-  sunkFace(file, 6);
-  await page.getByLabel("Upload scan…").setInputFiles(file);
-  await page.getByText("9,991 vertices").waitFor();
-  await page.getByLabel("From file…").setInputFiles(halfFaceLandmarks);
-  await page.getByText("11 set").waitFor();
-  await page.getByLabel("Open plan…").setInputFiles(join(root, "client/examples/plans/jaw_angle.json"));
+  await openSunkFace(page, system);
   await goTo("Goal");
   await page.getByLabel(/It lies on the face already/).check();
   await page.getByLabel("Take a scan as the goal…").setInputFiles(halfFace);

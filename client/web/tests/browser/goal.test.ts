@@ -5,7 +5,8 @@ import { join } from "node:path";
 import type { Download, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
 import { wcagProblems } from "../system/axe";
-import { halfFace, halfFaceLandmarks, sunkFace } from "../system/faces";
+import { halfFace } from "../system/faces";
+import { openSunkFace } from "../system/plans";
 import { PictureReader, type Box } from "../system/pixels";
 import { picture, root, System } from "../system/system";
 
@@ -19,14 +20,7 @@ beforeAll(async () => {
   await system.start();
   page = await system.newPage(errors);
   reader = await PictureReader.open(page);
-  await page.goto(system.address);
-  const file = join(system.folder, "sunk.obj");
-  ({ missingMl } = sunkFace(file, 6));
-  await page.getByLabel("Upload scan…").setInputFiles(file);
-  await page.getByText("9,991 vertices").waitFor();
-  await page.getByLabel("From file…").setInputFiles(halfFaceLandmarks);
-  await page.getByText("11 set").waitFor();
-  await page.getByLabel("Open plan…").setInputFiles(join(root, "client/examples/plans/jaw_angle.json"));
+  missingMl = await openSunkFace(page, system);
 });
 afterAll(() => system.stop());
 afterEach(async ({ task }) => {

@@ -1,10 +1,10 @@
 // Volumes under sliders: the skin follows them, and letting go changes the plan; then a run that
 // has settled takes more fat.
-import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import type { Locator, Page } from "playwright-core";
 import { afterAll, afterEach, beforeAll, describe, expect, it } from "vitest";
 import { wcagProblems } from "../system/axe";
+import { settledPlan } from "../system/plans";
 import { PictureReader, type Box } from "../system/pixels";
 import { picture, root, System } from "../system/system";
 
@@ -12,15 +12,6 @@ const system = new System();
 const errors: string[] = [];
 let page: Page;
 let reader: PictureReader;
-
-/** The paper-size patient, for its settled shape only: a run takes a second or two. */
-function settledPlan(): string {
-  const plan = JSON.parse(readFileSync(join(root, "client/examples/plans/jaw_angle.json"), "utf8"));
-  plan.simulation.time = { goal: "SETTLED_SHAPE", end_s: 600 };
-  const path = join(system.folder, "settled.json");
-  writeFileSync(path, JSON.stringify(plan));
-  return path;
-}
 
 beforeAll(async () => {
   await system.start();
@@ -30,7 +21,7 @@ beforeAll(async () => {
   await page.getByLabel("Upload scan…").setInputFiles(join(root, "client/examples/faces/half_face.obj"));
   await page.getByText("9,991 vertices").waitFor();
   await page.getByLabel("From file…").setInputFiles(join(root, "client/examples/faces/half_face.landmarks.json"));
-  await page.getByLabel("Open plan…").setInputFiles(settledPlan());
+  await page.getByLabel("Open plan…").setInputFiles(settledPlan(system.folder));
   await page.keyboard.press("3");
   await page.getByRole("button", { name: "Build the model" }).click();
   await page.getByText("2,480 elements").waitFor({ timeout: 60_000 });

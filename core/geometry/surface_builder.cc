@@ -22,10 +22,10 @@ bool has_colour(const std::array<float, 3>& rgb) {
 
 /// The brightest number of colours that do not say it.
 double guess_brightest(const std::vector<std::array<float, 3>>& colours) {
-  for (const auto& rgb : colours) {
-    if (has_colour(rgb) && *std::max_element(rgb.begin(), rgb.end()) > 1.0F) return 255.0;
-  }
-  return 1.0;
+  const auto above = std::count_if(colours.begin(), colours.end(), [](const auto& rgb) {
+    return has_colour(rgb) && *std::max_element(rgb.begin(), rgb.end()) > 2.0F;
+  });
+  return 100 * static_cast<size_t>(above) > colours.size() ? 255.0 : 1.0;
 }
 
 Rgb8 to_rgb8(const std::array<float, 3>& rgb, double brightest) {

@@ -25,8 +25,8 @@ class SurfaceBuilder {
   /// The colour of the vertex that was added last: red, green and blue in the file's own numbers.
   void add_colour(const std::array<double, 3>& rgb);
 
-  /// The number that is the brightest in the file. Where none is given it is 1, or 255 where a
-  /// colour is above 1.
+  /// The number that is the brightest in the file. Where none is given it is 255 if more than one
+  /// colour in a hundred is above 2, else 1: a few that are too bright must not darken the others.
   void set_brightest(double value) { brightest_ = value; }
 
   /// A polygon, to be cut into triangles at the end. Corners may name vertices still to come;

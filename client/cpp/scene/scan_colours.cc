@@ -63,10 +63,11 @@ absl::StatusOr<ColouredPoints> read_obj(const std::filesystem::path& file, doubl
     if (good) vertices.push_back(vertex);
   }
   if (vertices.empty()) return absl::InvalidArgumentError("has no colours behind its vertices (v x y z r g b)");
-  double most = 1.0;
-  for (const auto& vertex : vertices) most = std::max({most, vertex[3], vertex[4], vertex[5]});
-  const double scale = most > 1.0 ? 255.0 : 1.0;
-  return coloured_points(vertices, mm, scale);
+  // As the daemon reads them: a few that are too bright must not darken the others.
+  const auto above = std::count_if(vertices.begin(), vertices.end(), [](const auto& vertex) {
+    return std::max({vertex[3], vertex[4], vertex[5]}) > 2.0;
+  });
+  return coloured_points(vertices, mm, 100 * static_cast<size_t>(above) > vertices.size() ? 255.0 : 1.0);
 }
 
 absl::StatusOr<ColouredPoints> read_gltf(const std::filesystem::path& file, double mm) {

@@ -70,6 +70,16 @@ TEST(SurfaceColours, OfPlyHaveTheRangeOfTheirType) {
               ElementsAre(Rgb8{1, 1, 1}, Rgb8{0, 0, 0}, Rgb8{1, 0, 0}));
 }
 
+TEST(SurfaceColours, AFewThatAreTooBrightDoNotDarkenTheOthers) {
+  std::string bytes = "v 0 0 0 1.004 0 0\nv 100 0 0 7 0.50196 1e30\n";
+  for (int k = 0; k < 300; ++k) absl::StrAppend(&bytes, "v ", k, " 100 0 1 0 0\nf 1 2 ", k + 3, "\n");
+  const auto surface = read(bytes, SurfaceFormat::kObj);
+  ASSERT_EQ(surface.colours.size(), 302u);
+  EXPECT_EQ(surface.colours[0], kRed);
+  EXPECT_EQ(surface.colours[1], (Rgb8{255, 128, 255}));
+  EXPECT_EQ(surface.colours.back(), kRed);
+}
+
 TEST(SurfaceColours, ThreeMakeOne) {
   EXPECT_THAT(read(ply_of("uchar", "rg", "0 0 0 255 0\n100 0 0 0 128\n0 100 0 9 9\n"), SurfaceFormat::kPly).colours,
               IsEmpty());
